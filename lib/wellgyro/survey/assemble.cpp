@@ -31,8 +31,9 @@ std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, dou
                    top};
 }
 
-/// Where a pass begins that saw nothing of the hole from the tie-in down to it: on the line of
-/// another run, of the first `count`, that reaches there and is known best; absent where none does.
+/// Start of a pass whose first depth is below the tie-in, the hole between unseen by it: the point
+/// at that depth with the least covariance, on the lines of other runs, the first `count`; absent
+/// where none of them reaches it.
 std::optional<PathStart> StartOnOther(const Site& head, const std::vector<PassLine>& lines,
                                       std::size_t count, const PathStart& tie,
                                       const PassItems& pass) {
@@ -48,7 +49,7 @@ std::optional<PathStart> StartOnOther(const Site& head, const std::vector<PassLi
   return best;
 }
 
-/// Of the leg from one direction to another [rad/m].
+/// Dogleg severity of a leg between two tangents [rad/m].
 double SeverityOf(double length, const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
   const auto leg = MinimumCurvatureLeg(length, t1, t2);
   return leg ? leg->dogleg / length : 0;
@@ -278,8 +279,8 @@ std::string WhyNothing(const Job& job, const std::vector<PassItems>& passes, con
 
 }  // namespace
 
-// Beyond four sigmas begins one run in thirty thousand; beyond three it was one in 740, and no
-// survey was made of it.
+// P(x > 4) = 3.2e-5: one run in 30 000 begins further from its tie-in. With three sigmas it was one
+// in 740, of which no survey was made.
 double TieInReach(const Job& job) { return std::max(0.5, 4 * job.errors.depth_sigma); }
 
 Placed Assemble(const Job& job, const std::vector<DraftedRun>& runs) {

@@ -176,8 +176,8 @@ VectorXd DirectionsOf(const DifferenceCovariance& covariance) {
   return d;
 }
 
-/// What an offset of the second's depth, a stretch about `middle` and an offset of its azimuth do
-/// to the differences.
+/// Derivatives of the differences by an offset of the second's depth, a stretch of it about
+/// `middle` and an offset of its azimuth.
 MatrixXd ShapesOf(const DifferenceCovariance& covariance, std::span<const ComparedPlace> places,
                   double middle) {
   const auto n = static_cast<Eigen::Index>(covariance.joint.size());
@@ -203,7 +203,7 @@ void EstimateShifts(const VectorXd& d, const MatrixXd& cov, const MatrixXd& shap
   if (!root.positive()) return;
   const MatrixXd white = root.Whitened(shapes);
   const VectorXd white_d = root.Whitened(d);
-  // Beyond these the linear picture ends, and nobody would ask.
+  // Sigmas beyond these say nothing of a shift, nor is it linear any more: [m], [1], [rad].
   const double greatest[] = {length, 1.0, kPi};
   std::vector<Eigen::Index> used;
   for (Eigen::Index j = 0; j < 3; ++j) {
@@ -263,7 +263,8 @@ void TestJoint(const DifferenceCovariance& covariance, Comparison& comparison) {
            comparison.checks);
 }
 
-/// Where correlations are not known: the worst of all depths, each with its share.
+/// Without known correlations: of all depths the largest difference over its sigma, as the largest
+/// of so many looks.
 void TestWorst(const DifferenceCovariance& covariance, Comparison& comparison) {
   const char* const codes[] = {"compare_inclination", "compare_azimuth"};
   for (int i = 0; i < 2; ++i) {
@@ -297,7 +298,8 @@ void TestPosition(Comparison& comparison) {
   comparison.checks.push_back(check);
 }
 
-/// A pass of the few places that were asked for says nothing of the hole.
+/// Warns where the depths that were asked for span less than half of what both surveys have: that
+/// they agree there says nothing of the rest.
 void TellExtent(const std::vector<double>& depths, const Common& common, Comparison& comparison) {
   constexpr double kEnough = 0.5;  // [1], from which on what was seen is the greater part
   const double seen = (depths.back() - depths.front()) / (common.end - common.begin);
@@ -312,7 +314,7 @@ void TellExtent(const std::vector<double>& depths, const Common& common, Compari
   comparison.checks.push_back(check);
 }
 
-/// What the checks would have found, now that their limits are known.
+/// The smallest shifts that are noticed with kNoticedPower, now that the checks' limits are known.
 void SaySmallest(Comparison& comparison) {
   const auto say = [&](const char* code, double in_unit, std::optional<ShiftEstimate>& shift) {
     const auto check = std::ranges::find(comparison.checks, code, &Check::code);

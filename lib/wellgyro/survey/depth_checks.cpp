@@ -11,10 +11,11 @@
 namespace wellgyro {
 namespace {
 
-// Of the ratio, off a unit's own: accelerometers and a cable are some per cent, starts and stops
-// tell it to half of this (kToldScale). The next unit is off by a factor of three.
+// Relative deviation from a unit's own ratio within which a scale is that unit's: accelerometers
+// and a cable are off by some per cent, starts and stops tell it to half of this (kToldScale). The
+// next unit is off by a factor of three.
 constexpr double kOtherUnit = 0.15;
-// Six sigmas of the ratio, over it, from which it says something: half of kOtherUnit.
+// Six sigmas of the ratio, over it, below which it is judged.
 constexpr double kToldScale = kOtherUnit / 2;
 
 bool TellsScale(const DepthMotion::Found& found) {
@@ -43,7 +44,7 @@ std::optional<Check> WrongUnit(const DepthMotion::Found& found, std::optional<do
   return check;
 }
 
-/// Axes and units by which the motion that is felt is none.
+/// A check of axes or of the accelerometers' unit failed: the felt motion then means nothing.
 bool FeelsWrong(std::span<const Check> checks, std::int32_t run) {
   return std::ranges::any_of(checks, [run](const Check& c) {
     const bool of_force = c.code == "accel_unit" || c.code.starts_with("axes");

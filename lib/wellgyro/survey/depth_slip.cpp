@@ -67,7 +67,8 @@ std::vector<SlipPair> SlipPairsOf(std::span<const Station> passes, std::int32_t 
   return pairs;
 }
 
-/// Whitened differences, without what the passes' offset and a common error take up of them.
+/// Whitened differences, their projection on the nuisance parameters (offset of the passes' depths,
+/// common error of inclination) taken off.
 class Differences {
  public:
   Differences(const std::vector<SlipPair>& pairs, double sigma_offset)
@@ -142,7 +143,7 @@ SlipScan SlipScanOf(const std::vector<SlipPair>& pairs, double sigma_offset) {
     scan.sigma = 1 / std::sqrt(information);
     scan.md = md;
   }
-  // What the likeliest leaves is to be noise: where it is more, so is all of it.
+  // Reduced chi-square of what the likeliest slip leaves: above 1 all variances are as much larger.
   const double left = differences.squares() - Square(scan.size / scan.sigma);
   const double freedom = static_cast<double>(differences.onsets()) - 1;
   const double excess = std::max(1.0, left / freedom);

@@ -71,8 +71,8 @@ std::map<SourceKey, GroupErrors> FactorsOf(const SurveyErrors& errors, int surve
   return factors;
 }
 
-/// Of each station's direction in either way across what is its own: of what is local in a
-/// difference a half, and the random terms.
+/// Variance of a station's own direction, per component across: half of a difference's local
+/// variance, and the random terms of the model [rad^2].
 std::vector<double> NoiseOf(const ComparedSurvey& survey, const CompareOptions& options) {
   const std::size_t n = survey.well.survey.size();
   std::vector<double> noise(n, options.local_sigma * options.local_sigma / 2);
@@ -109,7 +109,7 @@ class Accumulator {
   std::vector<Eigen::Index> joint_row_;  ///< of each depth, or -1
   DifferenceCovariance result_;
   std::vector<Vector2d> variance_;
-  // The factor in hand.
+  // Effects of the error source at hand, over the rows [begin_, end_).
   std::vector<Vector2d> direction_;
   std::vector<Vector3d> position_;
   std::size_t begin_ = 0, end_ = 0;
@@ -161,7 +161,7 @@ void Accumulator::Add(const ListedErrors& listed, std::span<const Vector3d> posi
   for (std::size_t row = 0; row < position.size(); ++row) position_[row] += sign * position[row];
 }
 
-/// The factor is whole: its square goes into the covariances.
+/// Adds the outer product of the source's effects to the covariances, and clears them.
 void Accumulator::Close() {
   const auto n = static_cast<Eigen::Index>(result_.joint.size());
   for (std::size_t row = begin_; row < end_; ++row) {
@@ -185,7 +185,7 @@ void Accumulator::Close() {
   }
 }
 
-/// How far the hole is from a survey's spline at depths that are none of its stations.
+/// Adds the interpolation error: how far the hole is from a survey's spline between its stations.
 void Accumulator::AddOffSplines(int survey) {
   const auto& stations = surveys_[survey]->well.survey;
   const auto& places = places_[survey];
@@ -208,8 +208,8 @@ void Accumulator::AddOffSplines(int survey) {
   }
 }
 
-/// Of each direction at the common stations: what no model speaks of, but at the first one, and how
-/// far the hole is from either survey's spline.
+/// Variance of the differences' local errors at the common stations, per component across: what is
+/// beyond the models (none at the first station), and the interpolation errors of either survey.
 std::vector<double> Accumulator::LocalAtStations() const {
   std::vector<double> variance(common_.size(), options_.local_sigma * options_.local_sigma);
   variance.front() = 0;
@@ -224,8 +224,8 @@ std::vector<double> Accumulator::LocalAtStations() const {
   return variance;
 }
 
-/// What no model speaks of, summed to places: independent at every common station, straight between
-/// them.
+/// Adds the local errors to the covariances of places: independent from common station to station,
+/// linear between them.
 void Accumulator::AddLocal() {
   const std::vector<double> local = LocalAtStations();
   const std::size_t first = courses_[0].first_common();
@@ -287,7 +287,7 @@ void Accumulator::AddModelled() {
   }
 }
 
-/// Sigmas that a survey states itself, straight between its stations.
+/// Adds the sigmas that a survey states itself, linear between its stations.
 void Accumulator::Own(const ComparedSurvey& survey, std::span<const ListedPlace> places) {
   for (std::size_t row = 0; row < depths_.size(); ++row) {
     const ListedPlace& p = places[row];

@@ -100,7 +100,8 @@ void Estimator::HoldWhatIsAbsent() {
   }
 }
 
-/// Of the terms that may as well be 0 as what is assumed, the one that comes nearest to both.
+/// Holds the term of which the surveys say least, if they say nothing: neither 0 nor the assumed
+/// variance is beyond its confidence limit, and the larger of the two deviances is the least.
 bool Estimator::HoldTheVaguest() {
   const double limit = ChiSquareQuantile(kConfidence, 1);
   std::optional<std::size_t> vaguest;

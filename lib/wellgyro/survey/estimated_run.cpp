@@ -25,8 +25,8 @@ Anchor AnchorOf(const FixAtNode& at, double azimuth) {
   return {at.node, AttitudeMatrix(azimuth, at.fix.inclination, at.fix.toolface)};
 }
 
-/// Near east-west an azimuth and its mirror run into one, which a stop tells to its sigma: an
-/// azimuth on either side, where the mirror is within six of them; else none.
+/// Two azimuths to start from, a sigma or more to either side of the middle between an azimuth and
+/// its mirror, where these are within six sigmas of each other, as near east-west; else none.
 std::vector<double> SidesOf(const NorthFix& fix) {
   const double sigma = std::sqrt(fix.cov_attitude(1, 1));
   const double to_middle = WrapPi(kPi - 2 * fix.azimuth) / 2;
@@ -35,8 +35,9 @@ std::vector<double> SidesOf(const NorthFix& fix) {
   return {fix.azimuth + to_middle - half, fix.azimuth + to_middle + half};
 }
 
-/// From a tie, else from the surest fix and from its mirror; on the way past the fixes that have
-/// none.
+/// Starts through a tie or, without one, through all fixes that have no mirror; where there is none
+/// of these, one through the surest fix and one through its mirror. A surest fix without a mirror
+/// that is near east-west gives the two of SidesOf().
 std::vector<Start> StartsOf(const EstimateSetup& setup, const RunHistory& history) {
   Start sure;
   const FixAtNode *surest = nullptr, *surest_alone = nullptr;  // of all; of those without a mirror
@@ -69,7 +70,7 @@ std::vector<Start> StartsOf(const EstimateSetup& setup, const RunHistory& histor
           from(AnchorOf(*surest, *surest->fix.mirror_azimuth))};
 }
 
-/// From what is known at the begin of a part, past the fixes in it that have no mirror.
+/// Start at what is known at the begin of a part; it passes the fixes in it that have no mirror.
 Start StartOf(const RunState& known, const RunHistory& part) {
   Start start{{0, known.node().R_LT}};
   for (const FixAtNode& at : part.fixes) {
@@ -78,7 +79,7 @@ Start StartOf(const RunState& known, const RunHistory& part) {
   return start;
 }
 
-/// Every node as it was known on the way.
+/// The forward estimate's attitude at every node.
 NodeGuess GuessOf(const EstimateSetup& setup, const RunHistory& history) {
   std::vector<Eigen::Matrix3d> R_LT;
   for (const AttitudeSample& a : history.attitude) {

@@ -36,7 +36,7 @@ struct Departure {
 
   double w() const { return below / (above + below); }
   double v() const { return above / (above + below); }
-  /// Its variances for unit ones of the components.
+  /// Its variance by a unit variance of the component.
   double Unit(std::size_t component) const {
     const double bridge = above * below / (above + below);
     return component == kKink ? bridge : bridge * bridge * (above + below) / 3;
@@ -67,7 +67,8 @@ std::vector<Departure> DeparturesOf(const RoughListing& listing, double begin, d
   return departures;
 }
 
-/// What departures of neighbouring stations have in common, each component in units of `unit`.
+/// Covariance model of a listing's departures, source by source: a station's noise and the hole's
+/// roughness in a leg reach those of its neighbours too. Each component in units of `unit`.
 class Cluster {
  public:
   Cluster(std::span<const Departure> departures, std::span<const double> unit)
@@ -91,7 +92,7 @@ class Cluster {
  private:
   const Departure& At(Index row) const { return departures_[static_cast<std::size_t>(row)]; }
 
-  /// Effects on consecutive rows of which only those that there are count.
+  /// A source with its effects on rows from `first` on; rows that there are not are cut off.
   void Add(std::optional<Component> component, Index first, std::vector<double> effect) {
     const auto n = static_cast<Index>(departures_.size());
     while (first < 0 && !effect.empty()) effect.erase(effect.begin()), ++first;
@@ -131,8 +132,8 @@ class Cluster {
   VarianceCluster cluster_;
 };
 
-/// The square roots of what each component would be if it made all departures by itself; none where
-/// there are no departures to speak of.
+/// Root of each component's variance were it the only one, by the mean square of the departures;
+/// none where these are no more than rounding.
 std::vector<double> UnitsOf(const std::vector<std::vector<Departure>>& listings) {
   std::vector<double> unit(kComponents, 0);
   double count = 0, squares = 0;

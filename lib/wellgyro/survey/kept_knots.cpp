@@ -23,11 +23,12 @@ std::uint64_t Bits(std::int64_t value) { return static_cast<std::uint64_t>(value
 void Take(std::uint64_t bits, double& value) { value = std::bit_cast<double>(bits); }
 void Take(std::uint64_t bits, std::int64_t& value) { value = static_cast<std::int64_t>(bits); }
 
-/// Of what is expected; not of no number, whose sign is as the compiler happens to order operands.
+/// Bits of a prediction. 0 for a NaN: its sign depends on the order in which a compiler has
+/// operands.
 std::uint64_t Base(double expected) { return std::isfinite(expected) ? Bits(expected) : 0; }
 std::uint64_t Base(std::int64_t expected) { return Bits(expected); }
 
-/// Small numbers of either sign as small ones.
+/// Zigzag code: a small difference of either sign is a small number.
 std::uint64_t Folded(std::uint64_t difference) {
   return difference << 1 ^ (difference >> 63 != 0 ? ~std::uint64_t{0} : 0);
 }
@@ -35,7 +36,7 @@ std::uint64_t Unfolded(std::uint64_t folded) {
   return folded >> 1 ^ ((folded & 1) != 0 ? ~std::uint64_t{0} : 0);
 }
 
-/// Takes what a knot's numbers are above the expected ones.
+/// Codes each number of a knot as the difference of its bits from those predicted.
 struct Measure {
   KnotWords words{};
   std::size_t n = 0;
@@ -45,7 +46,7 @@ struct Measure {
   }
 };
 
-/// Gives a knot the numbers that are so much above the expected ones.
+/// Decodes what Measure has coded.
 struct Restore {
   KnotWords words{};
   std::size_t n = 0;
@@ -60,8 +61,8 @@ void Each(Code& code, Vector&& vector, const Expected& expected) {
   for (Eigen::Index i = 0; i < expected.size(); ++i) code(vector(i), double{expected(i)});
 }
 
-/// Rows by error: half of them are others turned by a right angle, some are made of others but for
-/// rounding, or nearly (FillErrors in attitude/).
+/// The derivatives by errors: half of them are others turned by a right angle, some follow from
+/// others but for rounding, or nearly (FillErrors in attitude/), and are predicted so.
 template <class Code>
 void GoThroughErrors(Code& code, Increment& inc, const Increment& before) {
   auto& turn = inc.turn_by_error;

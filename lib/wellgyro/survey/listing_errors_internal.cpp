@@ -18,14 +18,14 @@ std::vector<Vector3d> TangentsOf(const SurveyedWell& well) {
   return tangents;
 }
 
-/// Of the hole at stations.
+/// d(tangent)/d(md) of the hole at its stations, by a spline [1/m].
 std::vector<Vector3d> BendsOf(const SurveyedWell& well, std::span<const Vector3d> tangents) {
   std::vector<double> md;
   for (const SurveyPoint& p : well.survey) md.push_back(p.md);
   return SplineSlopes(md, tangents);
 }
 
-/// One factor's errors of one station.
+/// Errors of one station by one error source.
 struct Here {
   Vector3d direction = Vector3d::Zero(), displacement = Vector3d::Zero();
   double md = 0;
@@ -49,7 +49,7 @@ std::vector<ListedPlace> Places(const SurveyedWell& well, const std::vector<Vect
     const double f = place.fraction;
     const Vector3d &bend_a = bend[place.below - 1], &bend_b = bend[place.below];
     place.bend_W = (1 - f) * bend_a + f * bend_b;
-    // Hermite's cubic: the chord and how far the slopes at its ends are from it.
+    // Cubic Hermite interpolation: the chord, and what the slopes at its ends differ from it by.
     const Vector3d chord = t[place.below] - t[place.below - 1];
     place.smooth_W =
         (t[place.below - 1] + f * chord +

@@ -126,7 +126,8 @@ double Weight(Index contrast, Index listing) {
   return listing == contrast + 1 ? -k / std::sqrt(k * (k + 1)) : 0;
 }
 
-/// Errors that are one: those of one term and group, within a survey, a run, or everywhere.
+/// Key of what is one and the same error: of one term and group, within a survey (random), a run
+/// (systematic), or everywhere.
 using Shared = std::tuple<std::string, int, std::int64_t>;
 
 Shared SharedBy(const NamedSource& source, std::int64_t group, std::size_t listing, int run) {
@@ -140,7 +141,7 @@ Shared SharedBy(const NamedSource& source, std::int64_t group, std::size_t listi
   }
 }
 
-/// What one draw does to rows from `first` on.
+/// Effects of one error on rows from `first` on.
 struct Effect {
   Index first = 0;
   VectorXd rows;
@@ -281,7 +282,7 @@ void Contrasts::AddSources(const std::vector<bool>& known) {
   }
 }
 
-/// The contrasts are orthonormal: what is independent in every listing is so in them.
+/// Independent errors of equal variance stay so in the contrasts, which are orthonormal.
 void Contrasts::AddLocal(double sigma) {
   for (Index row = 0; row < result_.cluster.y.size(); ++row) {
     result_.cluster.sources.push_back({model_.terms.size(), row, VectorXd::Constant(1, sigma)});

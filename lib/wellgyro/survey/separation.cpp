@@ -72,7 +72,7 @@ std::optional<Place> InPlane(const HoleLine& line, const Vector3d& point, const 
   return best;
 }
 
-/// Everything about two lines that one row needs.
+/// Makes the rows of a separation table for two lines.
 class PairOfLines {
  public:
   PairOfLines(const HoleLine& first, const HoleLine& second, Pairing pairing,
@@ -173,7 +173,7 @@ std::optional<double> PairOfLines::FactorAt(const Place& place) const {
   return row ? row->factor : std::nullopt;
 }
 
-/// Golden section.
+/// Golden section search: where in [low, high] of the leg the factor is least.
 double PairOfLines::LowestIn(std::size_t leg, double low, double high) const {
   const auto factor = [&](double s) { return FactorAt({leg, s}).value_or(0); };
   double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
@@ -191,8 +191,9 @@ double PairOfLines::LowestIn(std::size_t leg, double low, double high) const {
 }
 
 void PairOfLines::AddMinima(std::size_t i, std::vector<Separation>& rows) const {
-  // Of a leg, where the factor is looked at: what is sought on lies about the least, within half of
-  // a leg, which holds one minimum of a distance between two arcs of a stand.
+  // Parts of a leg at whose ends the factor is evaluated. The minimum is then sought in the two
+  // parts beside the least: half a leg, in which the distance of two arcs of a stand has one
+  // minimum.
   constexpr int kParts = 4;
   const LegArc& leg = first_.tree().legs()[i];
   const Place ends[] = {{i, 0}, {i, leg.length}};

@@ -63,7 +63,7 @@ void StopWatch::Take(const StillWindow& window) {
   stops_.back().windows.push_back(window);
 }
 
-/// What lies within the stop is decided, and its north is found.
+/// Ends the windows of the stop: decides which of the waiting knots are still, and gyrocompasses.
 void StopWatch::Leave() {
   Stop& stop = stops_.back();
   for (WaitingKnot& knot : waiting_) {
@@ -75,7 +75,8 @@ void StopWatch::Leave() {
   stop.phase = Stop::Phase::kLeft;
 }
 
-/// Of three gyro axes what the fix, which checks gravity and the rate itself, does not say.
+/// Checks of a third gyro axis: vertical and horizontal rate. Gravity and the rate's size are
+/// checked with the fix.
 void StopWatch::CheckAtRest(std::span<const StillWindow> windows) {
   FieldCheckSetup setup;
   setup.reference.gravity = site_.site().gravity;

@@ -23,13 +23,13 @@ constexpr double kTurned = 0.05;  // of a way, by a north 3 deg aside: 2 sin 1.5
 constexpr double kPlaces = 1;     // that nobody asks for; of TVD, which has no slot [m]
 constexpr double kBendMost = FromDegrees(12) / 30;  // of a hole that a motor builds [rad/m]
 
-// Of the direction; near vertical the azimuth's own is no angle in the hole.
+// 1-sigma of the tangent: sqrt(var I + sin^2 I var A), the latter 1 at most, where A is unknown.
 double SigmaOfDirection(const Station& s) {
   const double across = std::pow(std::sin(s.inclination), 2) * s.cov_md_inc_azi(2, 2);
   return std::sqrt(s.cov_md_inc_azi(1, 1) + std::min(across, 1.0));
 }
 
-/// Of what lies along `p`.
+/// 1-sigma along `p`.
 double SigmaAlong(const Eigen::Matrix3d& cov, const Eigen::Vector3d& p) {
   const Eigen::Vector3d u = p.stableNormalized();
   return std::sqrt(std::max(0.0, u.dot(cov * u)));

@@ -20,7 +20,8 @@ constexpr std::size_t kCausesListed = 12;
 // Squares over freedom that are no fault yet: an hour's record tells white noise to some 7 %, and
 // of thousands of rows chance alone would fail for less.
 constexpr double kNoiseTold = 1.15;
-// A limit of chance for ever fewer clean runs is one for ever stranger distributions.
+// Least probability for which a limit is taken from the normal distribution or chi-square: further
+// out in the tails real errors are neither.
 constexpr double kLeastShare = 1e-7;
 
 bool ByChance(const Check& check) {
