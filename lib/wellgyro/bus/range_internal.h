@@ -8,7 +8,7 @@
 /// What fields may hold beyond what their type says; the same on the way in and out.
 namespace wellgyro {
 
-inline constexpr std::int32_t kBatchMax = 1000;  ///< N_MAX of imu_batch_t and raw_batch_t
+inline constexpr std::int32_t kBatchMax = limits::kBatch;  ///< N_MAX of imu_batch_t and raw_batch_t
 
 inline constexpr std::int32_t kKeyMax = 128;        ///< [bytes] of a key or signature
 inline constexpr std::int32_t kContentMax = 32768;  ///< [bytes] of a signed message

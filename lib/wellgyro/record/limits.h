@@ -15,6 +15,7 @@ inline constexpr double kDuration = 1e6;              ///< that a command asks f
 inline constexpr double kAngle = 100;                 ///< of a direction, either sign [rad]
 inline constexpr double kCorrection = 1e4;            ///< of a depth, either sign [m]
 inline constexpr std::size_t kText = 4096;            ///< of one text [bytes]
+inline constexpr std::int32_t kBatch = 1000;          ///< N_MAX, samples of one message
 inline constexpr std::size_t kChannel = 63;           ///< LCM_MAX_CHANNEL_NAME_LENGTH [bytes]
 
 // Differences and sums of two of these stay inside 64 bits.

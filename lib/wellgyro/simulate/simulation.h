@@ -158,7 +158,8 @@ struct Outage {
 };
 
 struct SimulatedStreams {
-  double imu_hz = 100;                           ///< 0.5 to 1e5
+  static constexpr double kImuHzLeast = 0.5, kImuHzMost = 1e5;
+  double imu_hz = 100;                           ///< kImuHzLeast to kImuHzMost
   double depth_hz = 10;                          ///< 0: no depth marks
   std::int32_t batch = 100;                      ///< new samples per message
   std::int32_t overlap = 0;                      ///< samples of the message before, sent again

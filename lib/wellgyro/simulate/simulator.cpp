@@ -19,7 +19,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;  // of one period, so that a last sample is not lost
 
 std::int32_t PeriodNs(double imu_hz) {
-  if (!(imu_hz >= 0.5 && imu_hz <= 1e5)) {
+  if (!(imu_hz >= SimulatedStreams::kImuHzLeast && imu_hz <= SimulatedStreams::kImuHzMost)) {
     throw std::invalid_argument(
         fmt::format("[streams] imu_hz: {} is not between 0.5 and 1e5", imu_hz));
   }

@@ -288,7 +288,7 @@ constexpr std::array kAlignment{
 constexpr std::array kStations{
     Word("attitude", "order", "second or third", "third", "in which samples are summed"),
     Number<&Job::stations, &StationSpec::every>("stations", "every_m", 1,
-                                                {.min = 0.2, .max = 1e5, .or_zero = true},
+                                                {.min = 0.2, .max = limits::kMd, .or_zero = true},
                                                 "spacing; 0: none", "10; 0 beside at_m"),
     Listed("stations", "at_m", "list of numbers that increase", kDepth, "none", "depths asked for"),
     Word("stations", "at_stops", "true or false", "false", "the gyrocompass stations too"),

@@ -15,6 +15,7 @@
 #include "wellgyro/calibration/apply.h"
 #include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/depth_track.h"
+#include "wellgyro/record/limits.h"
 #include "wellgyro/survey/mark_gate.h"
 #include "wellgyro/survey/plausible.h"
 #include "wellgyro/survey/run_book.h"
@@ -30,7 +31,7 @@ constexpr Duration kAheadAtLeast = Duration::Seconds(1);
 // kAheadAtLeast, so that these are not ahead.
 constexpr Duration kBatchPart = Duration::Seconds(0.5);
 // A tool of so many samples, a full message, is there and gives way to none that is new.
-constexpr std::int64_t kEstablished = 1000;
+constexpr std::int64_t kEstablished = limits::kBatch;
 // What tools say of themselves may come before any of their samples: room for four times as many.
 constexpr std::size_t kInfosMax = 4 * Surveyor::kToolsMax;
 // Of data time, between looks at which depth marks are still needed: 160 marks of 10 Hz more.

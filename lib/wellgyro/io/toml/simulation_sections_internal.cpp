@@ -239,7 +239,8 @@ SimulatedTool ReadSimulatedTool(TomlTable table, const NoiseCoefficients* noise,
 
 SimulatedStreams ReadSimulatedStreams(TomlTable table) {
   SimulatedStreams streams;
-  table.Read("imu_hz", streams.imu_hz, 1, {.min = 0.5, .max = 1e5});
+  table.Read("imu_hz", streams.imu_hz, 1,
+             {.min = SimulatedStreams::kImuHzLeast, .max = SimulatedStreams::kImuHzMost});
   table.Read("depth_hz", streams.depth_hz, 1, {.min = 0, .max = 1e5});
   ReadInt32(table, "batch", streams.batch, 1);
   ReadInt32(table, "overlap", streams.overlap, 0);
