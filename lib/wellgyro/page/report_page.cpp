@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/formats.h"
 #include "wellgyro/page/assets_internal.h"
 #include "wellgyro/page/html_head_internal.h"
 #include "wellgyro/page/html_internal.h"
@@ -60,7 +61,7 @@ Result<std::string> ReportPage(std::string_view survey_json, const ReportOptions
   } catch (const std::exception& error) {
     return Fault{.code = FaultCode::kSyntax, .text = error.what(), .source = "survey.json"};
   }
-  if (TextAt(survey, {"format"}) != "wellgyro.survey/1") {
+  if (TextAt(survey, {"format"}) != formats::kSurvey) {
     return Fault{.code = FaultCode::kForeign,
                  .text = "its format is not wellgyro.survey/1",
                  .source = "survey.json"};

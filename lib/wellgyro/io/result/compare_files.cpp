@@ -10,6 +10,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/result/taken_survey.h"
 #include "wellgyro/io/toml/toml_internal.h"
@@ -86,7 +87,7 @@ std::string CompareToml(const CompareRequest& request, const CompareAnswer& answ
                         const TakenSurvey& first, const TakenSurvey& second) {
   const Comparison& c = answer.comparison;
   TomlWriter toml;
-  toml.Text("format", "wellgyro.comparison/1");
+  toml.Text("format", formats::kComparison);
   toml.Text("verdict", WordOf(c.verdict.verdict));
   toml.Texts("causes", c.verdict.causes);
   toml.Whole("places", static_cast<std::int64_t>(c.places.size()));

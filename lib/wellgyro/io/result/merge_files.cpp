@@ -12,6 +12,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_files.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/result/covariance_csv.h"
 #include "wellgyro/io/text_internal.h"
@@ -119,7 +120,7 @@ double BoundBelow(const MergedSurvey& merged, std::size_t leg) {
 
 std::string ProgramToml(const MergePlan& plan, const MergedSurvey& merged) {
   TomlWriter toml;
-  toml.Text("format", "wellgyro.program/1");
+  toml.Text("format", formats::kProgram);
   toml.Table("tie_in");
   const Eigen::Vector3d& start = merged.well.position_W.front();
   toml.Number("north_m", start.x());
@@ -140,7 +141,7 @@ std::string ProgramToml(const MergePlan& plan, const MergedSurvey& merged) {
 
 std::string MergeToml(const MergePlan& plan, const MergeAnswer& answer) {
   TomlWriter toml;
-  toml.Text("format", "wellgyro.merged/1");
+  toml.Text("format", formats::kMerged);
   toml.Text("verdict", WordOf(answer.verdict.verdict));
   toml.Texts("causes", answer.verdict.causes);
   toml.Number("measure_m", answer.merged.measure);

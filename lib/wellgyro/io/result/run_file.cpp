@@ -15,6 +15,7 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/survey_csv.h"
 #include "wellgyro/io/exchange/survey_files.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/result/diagnosis_csv.h"
 #include "wellgyro/io/result/stretches_csv.h"
 #include "wellgyro/io/result/summary.h"
@@ -286,7 +287,7 @@ std::vector<SurveyFormat> BesidesCsv(std::span<const SurveyFormat> formats) {
 std::string RunToml(const RunRecord& record, const Job& job, const Survey& survey,
                     const std::vector<OutputFile>& outputs) {
   TomlWriter toml;
-  toml.Text("format", "wellgyro.run/1");
+  toml.Text("format", formats::kRun);
   toml.Text("program", record.program);
   const bool adjusted =
       std::ranges::any_of(survey.runs, [](const RunSummary& run) { return run.fit != nullptr; });
@@ -329,7 +330,7 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
 
 std::string SourceToml(const SourceRecord& record) {
   TomlWriter toml;
-  toml.Text("format", "wellgyro.source/1");
+  toml.Text("format", formats::kSource);
   toml.Text("name", record.name);
   if (!record.ended.empty()) toml.Text("ended", record.ended);
   toml.Table("counts");

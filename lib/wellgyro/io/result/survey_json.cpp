@@ -14,6 +14,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/io/exchange/losses.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/result/json_columns_internal.h"
 #include "wellgyro/io/result/json_table_internal.h"
 #include "wellgyro/io/result/other_well_internal.h"
@@ -65,7 +66,7 @@ Json PlanIn(const ResultTexts& texts) {
   const auto text = texts.find(kPlanFile);
   if (text == texts.end()) return nullptr;
   Json plan = Taken(JsonOfToml(text->second, kPlanFile));
-  if (MemberOf(plan, "format") == "wellgyro.plan/1") return plan;
+  if (MemberOf(plan, "format") == formats::kPlan) return plan;
   throw Refused{{.code = FaultCode::kForeign,
                  .text = "its format is not wellgyro.plan/1",
                  .source = kPlanFile}};
@@ -143,7 +144,7 @@ Json RunIn(const ResultTexts& texts) {
         {.code = FaultCode::kForeign, .text = "no such file in the result", .source = needed}};
   }
   Json run = Taken(JsonOfToml(texts.at("run.toml"), "run.toml"));
-  if (MemberOf(run, "format") != "wellgyro.run/1") {
+  if (MemberOf(run, "format") != formats::kRun) {
     throw Refused{{.code = FaultCode::kForeign,
                    .text = "its format is not wellgyro.run/1",
                    .source = "run.toml"}};
@@ -154,7 +155,7 @@ Json RunIn(const ResultTexts& texts) {
 Json Document(const ResultTexts& texts, std::span<const OtherWell> others) {
   Json run = RunIn(texts);
   Json document = Json::object();
-  document["format"] = "wellgyro.survey/1";
+  document["format"] = formats::kSurvey;
   document["job"] = InputOf(run, "job");
   document["noise"] = InputOf(run, "noise");
   document["tool_file"] = InputOf(run, "tool");

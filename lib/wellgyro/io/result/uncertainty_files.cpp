@@ -12,6 +12,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/exchange/well_stations.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/plot/well_plot.h"
 #include "wellgyro/io/result/covariance_csv.h"
 #include "wellgyro/io/toml/model_catalogue.h"
@@ -171,7 +172,7 @@ double TidyDegrees(double angle) { return Tidy(ToDegrees(angle)); }
 std::string SummaryToml(const UncertaintyRequest& request, const std::vector<InputFile>& inputs,
                         const UncertaintyAnswer& answer, bool allan) {
   TomlWriter toml;
-  toml.Text("format", "wellgyro.uncertainty/1");
+  toml.Text("format", formats::kUncertainty);
   toml.Number("confidence", request.confidence);
   if (allan) toml.Text("allan", request.form == AllanForm::kExact ? "exact" : "printed");
   const Surroundings& place = request.surroundings;

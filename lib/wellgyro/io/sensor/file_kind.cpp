@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/sensor/sensor_csv.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/text_internal.h"
@@ -22,23 +23,23 @@ struct Format {
 };
 
 constexpr std::array kFormats{
-    Format{"wellgyro.job/1", FileKind::kJob, "a wellgyro job"},
-    Format{"wellgyro.simulation/1", FileKind::kSimulation, "a wellgyro simulation"},
-    Format{"wellgyro.noise/1", FileKind::kNoise, "a wellgyro noise file"},
-    Format{"wellgyro.calibration/1", FileKind::kCalibration, "a wellgyro calibration"},
-    Format{"wellgyro.tool/1", FileKind::kTool, "a wellgyro tool file"},
-    Format{"wellgyro.error-model/1", FileKind::kErrorModel, "a wellgyro error model"},
-    Format{"wellgyro.program/1", FileKind::kProgram, "a wellgyro survey program"},
-    Format{"wellgyro.uncertainty/1", FileKind::kUncertainty,
+    Format{formats::kJob, FileKind::kJob, "a wellgyro job"},
+    Format{formats::kSimulation, FileKind::kSimulation, "a wellgyro simulation"},
+    Format{formats::kNoise, FileKind::kNoise, "a wellgyro noise file"},
+    Format{formats::kCalibration, FileKind::kCalibration, "a wellgyro calibration"},
+    Format{formats::kTool, FileKind::kTool, "a wellgyro tool file"},
+    Format{formats::kErrorModel, FileKind::kErrorModel, "a wellgyro error model"},
+    Format{formats::kProgram, FileKind::kProgram, "a wellgyro survey program"},
+    Format{formats::kUncertainty, FileKind::kUncertainty,
            "the summary of a wellgyro position uncertainty"},
-    Format{"wellgyro.run/1", FileKind::kRun, "the run file of a wellgyro result"},
-    Format{"wellgyro.source/1", FileKind::kSource, "the source file of a wellgyro result"},
-    Format{"wellgyro.clearance/1", FileKind::kClearancePolicy, "a wellgyro clearance policy"},
-    Format{"wellgyro.merge/1", FileKind::kForeign, "the plan of a wellgyro merge"},
-    Format{"wellgyro.merged/1", FileKind::kForeign, "the summary of a wellgyro merge"},
-    Format{"wellgyro.comparison/1", FileKind::kForeign, "the summary of a wellgyro comparison"},
-    Format{"wellgyro.plan/1", FileKind::kForeign, "the plan of a wellgyro survey's stops"},
-    Format{"wellgyro.wits/1", FileKind::kForeign, "the items of a rig's WITS for wellgyro"},
+    Format{formats::kRun, FileKind::kRun, "the run file of a wellgyro result"},
+    Format{formats::kSource, FileKind::kSource, "the source file of a wellgyro result"},
+    Format{formats::kClearance, FileKind::kClearancePolicy, "a wellgyro clearance policy"},
+    Format{formats::kMerge, FileKind::kForeign, "the plan of a wellgyro merge"},
+    Format{formats::kMerged, FileKind::kForeign, "the summary of a wellgyro merge"},
+    Format{formats::kComparison, FileKind::kForeign, "the summary of a wellgyro comparison"},
+    Format{formats::kPlan, FileKind::kForeign, "the plan of a wellgyro survey's stops"},
+    Format{formats::kWits, FileKind::kForeign, "the items of a rig's WITS for wellgyro"},
     Format{"wellgyro.journal/1", FileKind::kForeign, "the journal of a live wellgyro survey"},
 };
 

@@ -8,13 +8,13 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
 
 namespace wellgyro {
 namespace {
 
-constexpr std::string_view kCalibrationFormat = "wellgyro.calibration/1";
 using Shape = FitQuantity::Shape;
 constexpr std::size_t kResidualsShown = 4000;  // even
 
@@ -319,7 +319,7 @@ CalibrationFile TakeCalibration(TomlTable& root) {
 std::string CalibrationToml(const CalibrationFile& file) {
   const FitReport& report = file.report;
   TomlWriter out;
-  out.Text("format", kCalibrationFormat);
+  out.Text("format", formats::kCalibration);
   out.Text("method", report.method);
   out.Text("program", file.program);
   out.Texts("references", file.references);
@@ -344,7 +344,7 @@ std::string CalibrationToml(const CalibrationFile& file) {
 }
 
 Result<CalibrationFile> ParseCalibration(std::string_view text, const std::string& source) {
-  return ReadTomlText<CalibrationFile>(text, source, kCalibrationFormat, TakeCalibration);
+  return ReadTomlText<CalibrationFile>(text, source, formats::kCalibration, TakeCalibration);
 }
 
 }  // namespace wellgyro

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
 
@@ -122,7 +123,7 @@ ClearancePolicy TakeClearance(TomlTable& root) {
 Result<ClearancePolicy> ReadClearancePolicy(const std::filesystem::path& path) {
   const Result<std::string> text = ReadTextFile(path);
   if (!text) return text.fault();
-  return ReadTomlText<ClearancePolicy>(*text, path.string(), "wellgyro.clearance/1", TakeClearance);
+  return ReadTomlText<ClearancePolicy>(*text, path.string(), formats::kClearance, TakeClearance);
 }
 
 }  // namespace wellgyro

@@ -8,14 +8,13 @@
 #include <fmt/ranges.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
 
 namespace wellgyro {
 namespace {
-
-constexpr std::string_view kErrorModelFormat = "wellgyro.error-model/1";
 
 struct Unit {
   Dimension dimension;
@@ -199,7 +198,7 @@ void WriteTerm(const ErrorTerm& term, TomlWriter& out) {
 }  // namespace
 
 Result<ErrorModel> ReadErrorModel(std::string_view text, const std::string& source) {
-  return ReadTomlText<ErrorModel>(text, source, kErrorModelFormat, ReadModel);
+  return ReadTomlText<ErrorModel>(text, source, formats::kErrorModel, ReadModel);
 }
 
 Result<ErrorModel> ReadErrorModelFile(const std::filesystem::path& path) {
@@ -210,7 +209,7 @@ Result<ErrorModel> ReadErrorModelFile(const std::filesystem::path& path) {
 
 Result<std::string> WriteErrorModel(const ErrorModel& model, std::span<const std::string> remarks) {
   TomlWriter out;
-  out.Text("format", kErrorModelFormat);
+  out.Text("format", formats::kErrorModel);
   out.Text("name", model.name);
   out.Text("revision", model.revision);
   out.Text("source", model.source);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "wellgyro/io/exchange/survey_csv.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/toml/coefficients_internal.h"
 #include "wellgyro/io/toml/error_model_file.h"
 #include "wellgyro/io/toml/job_numbers_internal.h"
@@ -18,8 +19,6 @@
 
 namespace wellgyro {
 namespace {
-
-constexpr std::string_view kJobFormat = "wellgyro.job/1";
 
 TieIn TieInOfSurvey(const std::string& text, const std::string& source) {
   const auto stations = ParseSurveyCsv(text, source);
@@ -133,7 +132,7 @@ Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& sou
   NamedFiles files(folder);
   files.Note("job", source, text);
   Result<JobFile> file =
-      ReadTomlText<JobFile>(text, source.string(), kJobFormat,
+      ReadTomlText<JobFile>(text, source.string(), formats::kJob,
                             [&](TomlTable& root) { return JobReader(files).Read(root); });
   if (file) file->files = files.all();
   return file;
@@ -141,7 +140,7 @@ Result<JobFile> ParseJob(std::string_view text, const std::filesystem::path& sou
 
 std::set<std::string> KeysAskedOfJob(std::string_view text, const std::filesystem::path& folder) {
   NamedFiles files(folder);
-  TomlDocument document(text, "job", kJobFormat);
+  TomlDocument document(text, "job", formats::kJob);
   TomlTable root(document);
   try {
     JobReader(files).Read(root);

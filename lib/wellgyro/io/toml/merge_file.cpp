@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/io/exchange/well_stations.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/program_file.h"
@@ -217,7 +218,7 @@ Result<MergePlan> ReadMergePlan(const std::filesystem::path& path, North wanted)
 Result<MergePlan> ParseMergePlan(std::string_view text, const std::string& source,
                                  const std::filesystem::path& folder, North wanted) {
   const auto read = [&](TomlTable& root) { return PlanReader(folder, wanted).Read(root); };
-  return ReadTomlText<MergePlan>(text, source, "wellgyro.merge/1", read);
+  return ReadTomlText<MergePlan>(text, source, formats::kMerge, read);
 }
 
 }  // namespace wellgyro

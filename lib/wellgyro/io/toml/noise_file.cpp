@@ -1,6 +1,7 @@
 #include "wellgyro/io/toml/noise_file.h"
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/coefficients_internal.h"
 #include "wellgyro/io/toml/toml_internal.h"
@@ -8,8 +9,6 @@
 
 namespace wellgyro {
 namespace {
-
-constexpr std::string_view kNoiseFormat = "wellgyro.noise/1";
 
 struct Key {
   NoiseTerm term;
@@ -76,7 +75,7 @@ NoiseCoefficients TakeNoise(TomlTable& root) {
 
 std::string NoiseFileText(const NoiseFit& fit, const NoiseFileHead& head) {
   TomlWriter toml;
-  toml.Text("format", kNoiseFormat);
+  toml.Text("format", formats::kNoise);
   toml.Text("sensor", head.accelerometer ? "accelerometer" : "gyro");
   toml.Table("coefficients");
   for (const auto& key : kKeys) {
@@ -107,7 +106,7 @@ std::string NoiseFileText(const NoiseFit& fit, const NoiseFileHead& head) {
 }
 
 Result<NoiseCoefficients> ParseNoiseFile(std::string_view text, const std::string& source) {
-  return ReadTomlText<NoiseCoefficients>(text, source, kNoiseFormat, TakeNoise);
+  return ReadTomlText<NoiseCoefficients>(text, source, formats::kNoise, TakeNoise);
 }
 
 Result<NoiseCoefficients> ReadNoiseFile(const std::filesystem::path& path) {

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
 
@@ -200,7 +201,7 @@ PlanFile ReadPlan(TomlTable& root) {
 std::string PlanToml(const PlanReport& report) {
   const StopPlan& plan = report.plan;
   TomlWriter toml;
-  toml.Text("format", "wellgyro.plan/1");
+  toml.Text("format", formats::kPlan);
   toml.Flag("feasible", plan.feasible);
   if (!plan.feasible) toml.Text("why_not", plan.why_not);
   toml.Text("well", report.well);
@@ -230,7 +231,7 @@ std::string PlanToml(const PlanReport& report) {
 }
 
 Result<PlanFile> ParsePlanFile(std::string_view text, const std::string& source) {
-  return ReadTomlText<PlanFile>(text, source, "wellgyro.plan/1",
+  return ReadTomlText<PlanFile>(text, source, formats::kPlan,
                                 [](TomlTable& root) { return ReadPlan(root); });
 }
 

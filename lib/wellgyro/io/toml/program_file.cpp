@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/toml_internal.h"
@@ -114,7 +115,7 @@ Result<SurveyProgram> ReadSurveyProgram(const std::filesystem::path& path, North
   const auto read = [&](TomlTable& root) {
     return ProgramReader(path.parent_path(), wanted).Read(root);
   };
-  return ReadTomlText<SurveyProgram>(*text, path.string(), "wellgyro.program/1", read);
+  return ReadTomlText<SurveyProgram>(*text, path.string(), formats::kProgram, read);
 }
 
 }  // namespace wellgyro

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <fmt/core.h>
 
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/toml/run_lesson_internal.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/tool_file.h"
@@ -155,7 +156,7 @@ RunLessons LessonsOf(TomlTable& root, const std::string& source) {
 
 Result<RunLessons> ParseRunLessons(std::string_view text, const std::string& source) {
   try {
-    TomlDocument document(text, source, "wellgyro.run/1");
+    TomlDocument document(text, source, formats::kRun);
     TomlTable root(document);
     return LessonsOf(root, source);
   } catch (const TomlError& error) {

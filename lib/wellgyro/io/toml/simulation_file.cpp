@@ -6,6 +6,7 @@
 #include <string>
 
 #include "wellgyro/io/exchange/well_table_internal.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/sha256.h"
 #include "wellgyro/io/toml/coefficients_internal.h"
 #include "wellgyro/io/toml/fault_section_internal.h"
@@ -16,8 +17,6 @@
 
 namespace wellgyro {
 namespace {
-
-constexpr std::string_view kSimulationFormat = "wellgyro.simulation/1";
 
 SimulatedWell TakeWell(TomlTable table, NamedFiles& files) {
   Eigen::Vector3d begin = Eigen::Vector3d::Zero();
@@ -70,7 +69,7 @@ Result<SimulationFile> ParseSimulation(std::string_view text, const std::filesys
   NamedFiles files(folder);
   files.Note("simulation", source, text);
   Result<SimulationFile> file = ReadTomlText<SimulationFile>(
-      text, source.string(), kSimulationFormat,
+      text, source.string(), formats::kSimulation,
       [&](TomlTable& root) { return TakeSimulation(root, files, run); });
   if (file) file->files = files.all();
   return file;

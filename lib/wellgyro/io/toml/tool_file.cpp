@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/calibration/apply.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/coefficients_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
@@ -17,8 +18,6 @@
 
 namespace wellgyro {
 namespace {
-
-constexpr std::string_view kToolFormat = "wellgyro.tool/1";
 
 constexpr std::string_view kHead =
     "From counts of raw_batch_t to SI units in tool axes T (z down-hole, x to the reference mark,\n"
@@ -187,7 +186,7 @@ void WriteGroup(TomlWriter& out, const SensorGroup& group, const GroupWords& wor
 }  // namespace
 
 Result<ToolCalibration> ParseTool(std::string_view text, const std::string& source) {
-  return ReadTomlText<ToolCalibration>(text, source, kToolFormat, TakeToolFile);
+  return ReadTomlText<ToolCalibration>(text, source, formats::kTool, TakeToolFile);
 }
 
 Result<ToolCalibration> ReadToolFile(const std::filesystem::path& path) {
@@ -199,7 +198,7 @@ Result<ToolCalibration> ReadToolFile(const std::filesystem::path& path) {
 std::string ToolToml(const ToolCalibration& tool) {
   if (const auto complaint = FindComplaint(tool)) throw std::invalid_argument(*complaint);
   TomlWriter out;
-  out.Text("format", kToolFormat);
+  out.Text("format", formats::kTool);
   out.Comment(kHead);
   if (!tool.asset_serial.empty()) out.Text("asset_serial", tool.asset_serial);
   if (!tool.sensor_serials.empty()) out.Text("sensor_serials", tool.sensor_serials);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/io/formats.h"
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
 
@@ -35,7 +36,7 @@ WitsItems TakeWits(TomlTable& root) {
 }  // namespace
 
 Result<WitsItems> ParseWitsItems(std::string_view text, const std::filesystem::path& source) {
-  return ReadTomlText<WitsItems>(text, source.string(), "wellgyro.wits/1", TakeWits);
+  return ReadTomlText<WitsItems>(text, source.string(), formats::kWits, TakeWits);
 }
 
 Result<WitsItems> ReadWitsItems(const std::filesystem::path& path) {
