@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/toml/model_catalogue.h"
+#include "wellgyro/io/words.h"
 
 #include "commands.h"
 #include "report.h"
@@ -17,11 +18,6 @@ namespace {
 struct ModelsOptions {
   std::string name;
 };
-
-const char* Word(Propagation propagation) {
-  constexpr const char* kWords[] = {"random", "systematic", "well", "global"};
-  return kWords[static_cast<int>(propagation)];
-}
 
 void PrintList() {
   for (const ErrorModel& model : OwnModels()) {
@@ -40,7 +36,7 @@ void PrintModel(const ErrorModel& model) {
   for (const ErrorTerm& term : model.terms) {
     const std::string unit = term.unit.empty() ? "(SI)" : term.unit == "1" ? "-" : term.unit;
     fmt::print("  {:<14} {:<12} {:<12} {:g} {}\n", term.name,
-               term.formula ? "formula" : std::string(term.weight->code), Word(term.propagation),
+               term.formula ? "formula" : std::string(term.weight->code), WordOf(term.propagation),
                term.magnitude / term.unit_si, unit);
   }
 }

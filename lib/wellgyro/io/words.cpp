@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include "wellgyro/uncertainty/error_model.h"
+
 namespace wellgyro {
 namespace {
 
@@ -28,6 +30,7 @@ constexpr std::array<std::string_view, 12> kFlags{
 constexpr std::array<std::string_view, 11> kFaults{"io",    "foreign", "fingerprint", "size",
                                                    "range", "syntax",  "damaged",     "lost",
                                                    "late",  "order",   "conflict"};
+constexpr std::array<std::string_view, 4> kPropagations{"random", "systematic", "well", "global"};
 
 template <class Enum>
 std::string_view WordAt(Words words, Enum value) {
@@ -53,6 +56,7 @@ std::string_view WordOf(Verdict verdict) { return WordAt(kVerdicts, verdict); }
 std::string_view WordOf(Event::Kind kind) { return WordAt(kEvents, kind); }
 std::string_view WordOf(DepthKind kind) { return WordAt(kDepths, kind); }
 std::string_view WordOf(FaultCode code) { return WordAt(kFaults, code); }
+std::string_view WordOf(Propagation reach) { return WordAt(kPropagations, reach); }
 
 std::optional<StationKind> StationKindOf(std::string_view word) {
   return Find<StationKind>(kKinds, word);

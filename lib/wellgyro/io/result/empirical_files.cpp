@@ -7,6 +7,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/toml/error_model_file.h"
+#include "wellgyro/io/words.h"
 
 namespace wellgyro {
 namespace {
@@ -49,12 +50,10 @@ std::string Row(const TermEstimate& e, std::string_view weight, std::string_view
 }
 
 std::string Estimates(const EmpiricalModel& made) {
-  constexpr const char* kReaches[] = {"random", "systematic", "well", "global"};
   std::string csv = "TERM,WEIGHT,PROPAGATION,UNIT,ASSUMED,MAGNITUDE,LOWER95,UPPER95,KEPT\n";
   for (std::size_t j = 0; j < made.terms.size(); ++j) {
     const ErrorTerm& term = made.model.terms[j];
-    csv += Row(made.terms[j], term.weight->code, kReaches[static_cast<int>(term.propagation)],
-               UnitOf(term));
+    csv += Row(made.terms[j], term.weight->code, WordOf(term.propagation), UnitOf(term));
   }
   TermEstimate local = made.local;
   local.term = "LOCAL";

@@ -12,6 +12,7 @@
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/toml_writer_internal.h"
+#include "wellgyro/io/words.h"
 
 namespace wellgyro {
 namespace {
@@ -45,10 +46,9 @@ constexpr Unit kUnits[] = {
 const TomlWords<GyroAxes> kAxes = {
     {"xyz", GyroAxes::kXyz}, {"xy", GyroAxes::kXy}, {"z", GyroAxes::kZ}};
 
-const TomlWords<Propagation> kReaches = {{"random", Propagation::kRandom},
-                                         {"systematic", Propagation::kSystematic},
-                                         {"well", Propagation::kWell},
-                                         {"global", Propagation::kGlobal}};
+std::pair<std::string_view, Propagation> Worded(Propagation reach) {
+  return {WordOf(reach), reach};
+}
 
 double SiPer(TomlTable& table, const ErrorTerm& term, const std::string& unit) {
   std::vector<std::string_view> fitting;
@@ -73,7 +73,11 @@ void ReadRest(TomlTable& table, ErrorTerm& term) {
   term.unit = *unit;
   term.unit_si = SiPer(table, term, *unit);
   term.magnitude = magnitude * term.unit_si;
-  term.propagation = table.Need("propagation", table.FindWord("propagation", kReaches));
+  term.propagation =
+      table.Need("propagation",
+                 table.FindWord<Propagation>(
+                     "propagation", {Worded(Propagation::kRandom), Worded(Propagation::kSystematic),
+                                     Worded(Propagation::kWell), Worded(Propagation::kGlobal)}));
 }
 
 /// Every complaint about a term names it.
@@ -192,7 +196,7 @@ void WriteTerm(const ErrorTerm& term, TomlWriter& out) {
   out.Text("weight", term.weight->code);
   out.Number("magnitude", term.magnitude / unit->si);
   out.Text("unit", unit->name);
-  out.Text("propagation", WordIn(kReaches, term.propagation));
+  out.Text("propagation", WordOf(term.propagation));
 }
 
 }  // namespace
