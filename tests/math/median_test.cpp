@@ -16,6 +16,8 @@ TEST(Median, IsTheMiddleOfAnEvenNumberTheUpper) {
 
 TEST(Median, OfTheSizesOfNormalDeviationsGivesSigma) {
   EXPECT_NEAR(kSigmaPerMedianSize, 1 / NormalQuantile(0.75), 5e-5);
+  EXPECT_EQ(RobustSigma({5, 1, 2}), kSigmaPerMedianSize * 2);
+  EXPECT_EQ(RobustSigma({9, 10, 12}, 10), kSigmaPerMedianSize);
 }
 
 }  // namespace
