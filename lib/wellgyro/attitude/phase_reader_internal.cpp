@@ -15,7 +15,8 @@ namespace {
 constexpr double kSineMin = 0.0087;
 // Of noise, where none is told: what a double leaves of it in the smoother [m/s^2 sqrt(s)].
 constexpr double kNoiseMin = 5e-7;
-// A third gyro's integral is followed as it is [rad].
+// A third gyro's integral is followed as it is [rad]: in a block of 0.02 s the slowest walk that is
+// tried, q = 1e-3 rad/s/sqrt(s), moves psi by q T^1.5 / sqrt(3) = 1.6e-6.
 constexpr double kGyroSigma = 1e-6;
 // Rate of the phase, by which the next is unwrapped: mean over a quarter of a second [1/s]. A turn
 // is lost only where it errs by pi in a block; at 2 and at 8 three clean runs have the same bytes.

@@ -45,7 +45,7 @@ constexpr double kOffWindow = 0.2;
 // the best paths have joined. It bounds the memory to 660 kSteps kSpins bytes, 8 MB.
 constexpr std::size_t kPiece = 600, kAgain = 60;
 constexpr std::size_t kLeast = 10;  // knots, as a window has
-constexpr float kBarred = 1e9F;
+constexpr float kBarred = 1e9F;     // cost of what is not, as a tool at rest that turns
 
 /// A value for every rate (rows) and heading at the begin of a knot (columns).
 template <typename T>
