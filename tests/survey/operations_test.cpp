@@ -172,6 +172,9 @@ TEST_F(Operations, TheRightStationsAreChosenAndTheChecksSayWhatWasDone) {
         << code << " " << check->value.value_or(NAN) << " of " << check->limit.value_or(NAN);
     EXPECT_TRUE(check->value.has_value()) << code;
   }
+  const Check* motion = Find(survey, "rest_motion", 2);
+  ASSERT_NE(motion, nullptr);
+  EXPECT_EQ(motion->verdict, Verdict::kPass) << "the tool's clock began anew";
   const Check* foresight = Find(survey, "foresight", 2);
   ASSERT_NE(foresight, nullptr);
   ASSERT_TRUE(foresight->value.has_value());

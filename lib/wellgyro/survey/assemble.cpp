@@ -21,8 +21,6 @@
 namespace wellgyro {
 namespace {
 
-PathStation PathOf(const Station& s) { return {s.md, s.inclination, s.azimuth}; }
-
 std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, double md,
                                      const Eigen::Vector3d& top) {
   const auto i = line.Below(md);
@@ -32,21 +30,24 @@ std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, dou
 }
 
 /// Start of a pass whose first depth is below the tie-in, the hole between unseen by it: the point
-/// at that depth with the least covariance, on the lines of other runs, the first `count`; absent
-/// where none of them reaches it.
+/// at that depth with the least covariance, on the lines of other runs, the first `count`; where
+/// none of them reaches it, the deepest point that they have; absent where they have none.
 std::optional<PathStart> StartOnOther(const Site& head, const std::vector<PassLine>& lines,
                                       std::size_t count, const PathStart& tie,
                                       const PassItems& pass) {
   const double from = SeenFrom(pass);
   std::optional<PathStart> best;
   if (from - tie.point.station.md <= kUnseenLeg) return best;
+  const PassLine* deepest = nullptr;
   for (std::size_t i = 0; i < count; ++i) {
     const double end = lines[i].points.back().station.md;
+    if (!deepest || end > deepest->points.back().station.md) deepest = &lines[i];
     if (end < from - kUnseenLeg) continue;
     const auto start = StartOnLine(head, lines[i], std::min(from, end), tie.top_tangent_W);
     if (start && (!best || start->cov_p_WT_W.trace() < best->cov_p_WT_W.trace())) best = start;
   }
-  return best;
+  if (best || !deepest || deepest->points.size() < 2) return best;
+  return PathStart{deepest->points.back(), deepest->covs_W.back(), tie.top_tangent_W};
 }
 
 /// Dogleg severity of a leg between two tangents [rad/m].

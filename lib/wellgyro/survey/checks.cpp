@@ -62,20 +62,24 @@ void CheckFixes(const Job& job, const RunSummary& run, std::vector<Check>& check
   }
 }
 
-/// The pairs of stations of one run at one depth, one of pass `a` and one of pass `b`.
-template <class Take>
-void ForPairs(std::span<const Station> stations, std::int32_t run, Pass a, Pass b, Take take) {
-  std::vector<const Station*> first, second;
+/// Of one run and pass, by depth.
+std::vector<const Station*> StationsOf(std::span<const Station> stations, std::int32_t run,
+                                       Pass pass) {
+  std::vector<const Station*> found;
   for (const Station& s : stations) {
-    if (s.run != run || s.status == StationStatus::kRejected) continue;
-    if (s.pass == a) first.push_back(&s);
-    if (s.pass == b) second.push_back(&s);
+    if (s.run == run && s.pass == pass && s.status != StationStatus::kRejected) found.push_back(&s);
   }
-  const auto by_md = [](const Station* x, const Station* y) { return x->md < y->md; };
-  std::stable_sort(second.begin(), second.end(), by_md);
+  std::ranges::stable_sort(found, {}, [](const Station* s) { return s->md; });
+  return found;
+}
+
+/// The pairs of stations at one depth, one of each.
+template <class Take>
+void ForPairs(std::span<const Station* const> first, std::span<const Station* const> second,
+              Take take) {
   for (const Station* s : first) {
-    const auto at = std::lower_bound(second.begin(), second.end(), s->md - kSameDepth,
-                                     [](const Station* x, double md) { return x->md < md; });
+    const auto at = std::ranges::lower_bound(second, s->md - kSameDepth, {},
+                                             [](const Station* x) { return x->md; });
     if (at != second.end() && (*at)->md <= s->md + kSameDepth) take(*s, **at);
   }
 }
@@ -107,10 +111,11 @@ Measured AzimuthDifference(const Station& a, const Station& b) {
   return {2 * half, std::sqrt(variance) * per_chord};
 }
 
-/// The pair with the largest |difference| / sigma, var = var_a + var_b. Two passes of one tool
-/// share instrument errors: in a difference these cancel where they have one sign in both passes.
-void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t run, Pass other,
-                 const std::string& name, std::vector<Check>& checks) {
+/// The pair with the largest |difference| / sigma, var = var_a + var_b. Passes of one tool share
+/// instrument errors: in a difference these cancel where they have one sign in both passes.
+void CheckPasses(const Job& job, std::span<const Station* const> first,
+                 std::span<const Station* const> second, std::int32_t run, const std::string& name,
+                 std::vector<Check>& checks) {
   struct Worst {
     Measured difference;
     double md = 0;
@@ -124,7 +129,7 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
   };
   Worst inclination, azimuth;
   int pairs = 0;
-  ForPairs(stations, run, Pass::kIn, other, [&](const Station& a, const Station& b) {
+  ForPairs(first, second, [&](const Station& a, const Station& b) {
     ++pairs;
     const double var_inclination = AngleVariance(a, 1) + AngleVariance(b, 1);
     inclination.Take({b.inclination - a.inclination, std::sqrt(var_inclination)}, a.md);
@@ -150,8 +155,8 @@ void CheckPasses(const Job& job, std::span<const Station> stations, std::int32_t
 
 /// Field practice; but at low inclination azimuths that may differ by more without a fault tell
 /// nothing.
-void CheckPractice(std::span<const Station> stations, std::int32_t run,
-                   std::vector<Check>& checks) {
+void CheckPractice(std::span<const Station* const> in, std::span<const Station* const> out,
+                   std::int32_t run, std::vector<Check>& checks) {
   namespace practice = field_practice;
   constexpr double kInclination = FromDegrees(practice::kInclinationDeg);
   constexpr double kLow = FromDegrees(practice::kSteepDeg);
@@ -167,7 +172,7 @@ void CheckPractice(std::span<const Station> stations, std::int32_t run,
     }
   };
   Worst inclination, azimuth;
-  ForPairs(stations, run, Pass::kIn, Pass::kOut, [&](const Station& a, const Station& b) {
+  ForPairs(in, out, [&](const Station& a, const Station& b) {
     inclination.Take(b.inclination - a.inclination, kInclination, a.md);
     if (Has(a.quality | b.quality, Quality::kVertical)) return;
     const bool low = a.inclination < kLow;
@@ -192,6 +197,25 @@ void CheckPractice(std::span<const Station> stations, std::int32_t run,
       inclination.pairs < practice::kDepths
           ? few
           : "fewer than 10 depths where the azimuth is sure enough");
+}
+
+/// A run against itself, on its way out and in its repeat section, and against the runs before it.
+void CheckAgainstOthers(const Job& job, const CheckInputs& inputs, const RunSummary& run,
+                        std::vector<Check>& checks) {
+  const auto of = [&](std::int32_t number, Pass pass) {
+    return StationsOf(inputs.passes, number, pass);
+  };
+  const std::vector<const Station*> in = of(run.run, Pass::kIn), out = of(run.run, Pass::kOut);
+  CheckPasses(job, in, out, run.run, "in_out", checks);
+  CheckPractice(in, out, run.run, checks);
+  CheckPasses(job, in, of(run.run, Pass::kRepeat), run.run, "repeat", checks);
+  std::vector<const Station*> before;
+  for (const RunSummary& other : inputs.runs) {
+    if (other.run == run.run) break;
+    const std::vector<const Station*> theirs = of(other.run, Pass::kIn);
+    if (!other.misrun) before.insert(before.end(), theirs.begin(), theirs.end());
+  }
+  if (!before.empty() && !run.misrun) CheckPasses(job, before, in, run.run, "runs", checks);
 }
 
 /// Depth lost on the way there and back, per kilometre of way, against field practice.
@@ -314,6 +338,27 @@ void CheckNoise(const Job& job, std::vector<Check>& checks) {
   checks.back().verdict = Verdict::kWarn;
 }
 
+/// Where marks are far apart, as [depth] max_gap_s may allow, depth between them is a guess at how
+/// the tool moved: a warning where that is worse than the depths that the job states.
+void CheckDepthSure(const Job& job, const RunSummary& run, const CheckInputs& inputs,
+                    std::vector<Check>& checks) {
+  constexpr double kLeast = 1;  // [m], as winches and pipe give it where they move
+  const Station* worst = nullptr;
+  for (const Station& s : inputs.passes) {
+    if (s.run != run.run || s.kind != StationKind::kContinuous) continue;
+    if (!worst || s.cov_md_inc_azi(0, 0) > worst->cov_md_inc_azi(0, 0)) worst = &s;
+  }
+  if (!worst) return;
+  const double way = worst->md - job.tie_in.md;
+  const double stated = std::hypot(job.errors.depth_sigma, job.errors.depth_scale_sigma * way);
+  Check check = CompareWith("depth_unsure", run.run, {std::sqrt(worst->cov_md_inc_azi(0, 0)), 0},
+                            3 * std::max(stated, kLeast), 1, "m",
+                            "three sigmas of depth as the job states it: marks are too far apart");
+  if (check.verdict == Verdict::kFail) check.verdict = Verdict::kWarn;
+  check.md = worst->md;
+  checks.push_back(check);
+}
+
 /// Time without depth; and hole that marks of the same time reached, of which there is no station,
 /// as of a tool whose UTC has jumped ahead of them.
 void CheckDepthKnown(const Job& job, const RunSummary& run, const CheckInputs& inputs,
@@ -329,6 +374,7 @@ void CheckDepthKnown(const Job& job, const RunSummary& run, const CheckInputs& i
                     job.depth.max_gap, job.depth.latency);
   }
   checks.push_back(unknown);
+  CheckDepthSure(job, run, inputs, checks);
   // Stations that are asked for one by one have a check of their own.
   const bool evenly = job.stations.every > 0 && job.stations.at.empty();
   if (!lacks || !inputs.deepest_mark || !evenly) return;
@@ -375,9 +421,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
     CheckFixes(job, run, checks);
     checks.insert(checks.end(), run.stop_checks.begin(), run.stop_checks.end());
     CheckStops(job, run, checks);
-    CheckPasses(job, inputs.passes, run.run, Pass::kOut, "in_out", checks);
-    CheckPractice(inputs.passes, run.run, checks);
-    CheckPasses(job, inputs.passes, run.run, Pass::kRepeat, "repeat", checks);
+    CheckAgainstOthers(job, inputs, run, checks);
     checks.push_back(CountOf("samples_lost", run.run, run.samples_lost, "none may be lost"));
     CheckDepthKnown(job, run, inputs, checks);
     CheckSamples(job, run, checks);

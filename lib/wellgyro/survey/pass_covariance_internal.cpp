@@ -14,7 +14,7 @@ namespace {
 
 /// What the hole may do in a leg that nobody saw: course-length terms XCLA and XCLH of the ISCWSA
 /// error model, SPE 187249.
-Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
+Eigen::Matrix3d UnseenCourse(const PathStation& above, const PathStation& below) {
   constexpr double kRatio = 0.167;  // XCLA, XCLH: of the leg's length times its turn [1]
   const double length = below.md - above.md;
   const double inclination = 0.5 * (above.inclination + below.inclination);
@@ -29,6 +29,51 @@ Eigen::Matrix3d UnseenCourse(const Station& above, const Station& below) {
   const double ratio = kRatio * length;
   return ratio * ratio * (high * high.transpose() + right * right.transpose());
 }
+
+/// The same where no point of the way to a station is: between marks of depth that are missing.
+Eigen::Matrix3d UnseenOnWay(std::optional<PathStation> above, const PassItem& below) {
+  Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
+  const auto add = [&](const PathStation& point) {
+    if (above && point.md - above->md > kUnseenLeg) unseen += UnseenCourse(*above, point);
+    above = point;
+  };
+  for (const PathStation& point : below.way) add(point);
+  add(PathOf(below.station));
+  return unseen;
+}
+
+/// What the errors e of single stations' depths, beyond the one that all share, do to the way
+/// below: a turn dt of the tangent at a depth off by e moves it by -e dt. Between marks far apart,
+/// where e is larger than what all share, it is taken for one error of the stations there, else for
+/// an independent one of each leg.
+class MisplacedTurns {
+ public:
+  explicit MisplacedTurns(double sigma_common) : common_(sigma_common) {}
+
+  Eigen::Matrix3d To(const Station& s) {
+    const double variance = s.cov_md_inc_azi(0, 0) - common_ * common_;
+    const double sigma = std::sqrt(std::max(variance, 0.0));
+    const Eigen::Vector3d tangent = Tangent(s.inclination, s.azimuth);
+    if (last_) {
+      const Eigen::Vector3d moved = 0.5 * (sigma + sigma_) * (tangent - *last_);
+      if (std::max(sigma, sigma_) > common_) {
+        stretch_ += moved;
+      } else {
+        sum_ += stretch_ * stretch_.transpose() + moved * moved.transpose();
+        stretch_.setZero();
+      }
+    }
+    sigma_ = sigma;
+    last_ = tangent;
+    return sum_ + stretch_ * stretch_.transpose();
+  }
+
+ private:
+  double common_, sigma_ = 0;
+  std::optional<Eigen::Vector3d> last_;
+  Eigen::Vector3d stretch_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d sum_ = Eigen::Matrix3d::Zero();
+};
 
 /// Covariance of a leg on which the azimuth was lost. Uniform azimuth of the true leg and of the
 /// drawn one: E[(x - x')^2] = 2 (L sin I)^2 / 2 in north and in east, with I the mean inclination.
@@ -53,7 +98,7 @@ class SystematicCovariance {
         TangentByAngles(station.inclination, station.azimuth) * sigma.asDiagonal();
     if (last_) {
       sum_ += 0.5 * (station.md - last_->md) * (last_turn_ + turn);
-      if (legs_unseen_) course_ += UnseenCourse(*last_, station);
+      if (legs_unseen_) course_ += UnseenCourse(PathOf(*last_), PathOf(station));
     }
     last_ = station;
     last_turn_ = turn;
@@ -107,8 +152,8 @@ std::vector<Eigen::Matrix3d> OfWindows(const PassItems& pass, const PathStart& s
   return covs;
 }
 
-std::vector<Eigen::Matrix3d> OfSamples(const PassItems& pass, const PathStart& start,
-                                       const Station& origin) {
+std::vector<Eigen::Matrix3d> OfSamples(const Job& job, const PassItems& pass,
+                                       const PathStart& start, const Station& origin) {
   std::vector<Eigen::Matrix3d> covs;
   const bool out = pass.front().station.pass == Pass::kOut;
   const auto order = out ? TimeAlongHole::kAgainstDepth : TimeAlongHole::kWithDepth;
@@ -117,21 +162,20 @@ std::vector<Eigen::Matrix3d> OfSamples(const PassItems& pass, const PathStart& s
   first.Add(origin);
   ShortOfWay shortfall(origin);
   AlongHoleCovariance sum(first.Add(pass.front().station), 0, order);
+  MisplacedTurns misplaced(job.errors.depth_sigma);
   Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
   const PassItem* above = nullptr;
   for (const PassItem& item : pass) {
     if (item.on_line) {
-      const bool leg = above != nullptr && item.way.empty();
-      if (leg && item.station.md - above->station.md > kUnseenLeg) {
-        unseen += UnseenCourse(above->station, item.station);
-      }
+      unseen += UnseenOnWay(above ? std::optional(PathOf(above->station)) : std::nullopt, item);
       const StationState* later = above == nullptr ? nullptr : out ? above->state : item.state;
       if (later != nullptr && later->cov_with_previous.size() == 0) {
         unseen += UnknownCourse(above->station, item.station);
       }
       above = &item;
       sum.Add(*item.state);
-      covs.push_back(sum.cov_without_depth_W() + unseen + shortfall.To(item.station));
+      covs.push_back(sum.cov_without_depth_W() + unseen + shortfall.To(item.station) +
+                     misplaced.To(item.station));
     } else {
       sum.Skip(*item.state);
       covs.push_back(covs.back());
@@ -164,7 +208,7 @@ PassCovariances PassCovariancesOf(const Job& job, const PassItems& pass, const P
                                    [](const PassItem& item) { return item.state == nullptr; });
   PassCovariances covs;
   covs.covs_of_sensors_W =
-      windows ? OfWindows(pass, start, origin) : OfSamples(pass, start, origin);
+      windows ? OfWindows(pass, start, origin) : OfSamples(job, pass, start, origin);
   for (const PassItem& item : pass) {
     covs.covs_of_depth_W.push_back(OfDepth(job, start.top_tangent_W, item.station));
   }

@@ -25,6 +25,8 @@ using PassItems = std::vector<PassItem>;  ///< in the order of depth
 /// gaps of 5 s at most (DepthTrackSetup::max_gap), 5 m at 1 m/s.
 inline constexpr double kUnseenLeg = 5;  // [m]
 
+inline PathStation PathOf(const Station& s) { return {s.md, s.inclination, s.azimuth}; }
+
 /// The depth from which on the pass saw the hole.
 inline double SeenFrom(const PassItems& pass) {
   const PassItem& first = pass.front();

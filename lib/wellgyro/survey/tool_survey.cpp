@@ -138,7 +138,7 @@ void ToolSurvey::Use(const AdmittedBlock& block, std::size_t at, std::size_t end
     run.motion->Restart();
   }
   depth_segment_ = segment;
-  run.watch->Push(block.sent.subspan(at, end - at), block.begin, at);
+  run.watch->Push(block.samples.Part(at, end - at).samples, block.begin, at);
   Feel(block, at, end, *run.motion);
   while (at < end) {
     at = run.survey->Push(block, at, end);
