@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "wellgyro/survey/pass_items_internal.h"
@@ -49,6 +51,57 @@ void JoinStopsBelow(std::map<std::int32_t, PassItems>& passes) {
   }
 }
 
+/// The points of a pass between two depths, where no leg there is longer than kUnseenLeg; else
+/// none.
+std::vector<PathStation> SeenBetween(const PassItems& pass, double from, double to) {
+  std::vector<PathStation> seen;
+  double md = from;
+  const auto take = [&](const PathStation& point) {
+    if (!(point.md > md) || !(point.md < to)) return true;
+    if (point.md - md > kUnseenLeg) return false;
+    seen.push_back(point);
+    md = point.md;
+    return true;
+  };
+  for (const PassItem& item : pass) {
+    if (!item.on_line) continue;
+    if (!std::ranges::all_of(item.way, take) || !take(PathOf(item.station))) return {};
+  }
+  return to - md > kUnseenLeg ? std::vector<PathStation>{} : seen;
+}
+
+/// The way to `below` with what other passes saw where this one has no depth.
+std::vector<PathStation> FilledWay(std::optional<PathStation> above, const PassItem& below,
+                                   std::span<const PassItems> others) {
+  std::vector<PathStation> filled;
+  const auto add = [&](const PathStation& point, bool own) {
+    for (std::size_t i = 0; above && i < others.size() && point.md - above->md > kUnseenLeg; ++i) {
+      const std::vector<PathStation> seen = SeenBetween(others[i], above->md, point.md);
+      filled.insert(filled.end(), seen.begin(), seen.end());
+      if (!seen.empty()) break;
+    }
+    if (own) filled.push_back(point);
+    above = point;
+  };
+  for (const PathStation& point : below.way) add(point, true);
+  add(PathOf(below.station), false);
+  return filled;
+}
+
+/// Where depth was missing on one way and not on another, the hole was seen.
+void FillGaps(std::vector<PassItems>& passes) {
+  const std::vector<PassItems> as_seen = passes;
+  for (PassItems& pass : passes) {
+    const PassItem* above = nullptr;
+    for (PassItem& item : pass) {
+      if (!item.on_line || item.state == nullptr) continue;
+      item.way =
+          FilledWay(above ? std::optional(PathOf(above->station)) : std::nullopt, item, as_seen);
+      above = &item;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
@@ -73,6 +126,7 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
       above = &item;
     }
   }
+  FillGaps(result);
   return result;
 }
 

@@ -1,11 +1,9 @@
 #include "wellgyro/survey/way.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "wellgyro/survey/choose.h"
-#include "wellgyro/survey/pass_covariance_internal.h"
 #include "wellgyro/trajectory/minimum_curvature.h"
 
 namespace wellgyro {
@@ -19,12 +17,9 @@ constexpr double kNearMd = 2 * kSameDepth;
 constexpr double kTurn = 1;
 
 std::optional<Eigen::Vector3d> BulgeOf(const Site& head, const PassLine& line, double from,
-                                       double to, double leg_most) {
+                                       double to) {
   const auto i = line.Below(from), j = line.Below(to);
   if (!i || !j) return std::nullopt;
-  for (std::size_t k = *i; k <= *j; ++k) {
-    if (line.points[k].station.md - line.points[k - 1].station.md > leg_most) return std::nullopt;
-  }
   const PathPoint a = Interpolate(head, line.points[*i - 1], line.points[*i], from);
   const PathPoint b = Interpolate(head, line.points[*j - 1], line.points[*j], to);
   const auto leg = MinimumCurvatureLeg(to - from, a.tangent_W, b.tangent_W);
@@ -98,16 +93,13 @@ Eigen::Vector3d Bulge(const Site& head, std::span<const PassLine> lines, const S
       return line.run == s.run && line.pass_number == s.pass_number;
     };
   };
-  // Where depth was missing a line is drawn as one arc: then another that saw the hole serves.
-  for (const double leg_most : {kUnseenLeg, HUGE_VAL}) {
-    for (const Station* s : {&below, &above}) {
-      const auto own = std::ranges::find_if(lines, of(*s));
-      if (own == lines.end()) continue;
-      if (const auto bulge = BulgeOf(head, *own, above.md, below.md, leg_most)) return *bulge;
-    }
-    for (const PassLine& line : lines) {
-      if (const auto bulge = BulgeOf(head, line, above.md, below.md, leg_most)) return *bulge;
-    }
+  for (const Station* s : {&below, &above}) {
+    const auto own = std::ranges::find_if(lines, of(*s));
+    if (own == lines.end()) continue;
+    if (const auto bulge = BulgeOf(head, *own, above.md, below.md)) return *bulge;
+  }
+  for (const PassLine& line : lines) {
+    if (const auto bulge = BulgeOf(head, line, above.md, below.md)) return *bulge;
   }
   return Eigen::Vector3d::Zero();
 }

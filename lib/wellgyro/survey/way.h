@@ -47,9 +47,8 @@ struct PassLine {
 };
 
 /// What minimum curvature between two depths leaves out of the way that the hole takes, as a pass
-/// saw it [m]: to be added to the displacement of a leg between them. Of `lines` that have a point
-/// every kUnseenLeg, and then of any, the pass of the lower station counts first, then that of the
-/// upper, then any; zero where none saw it all.
+/// saw it [m]: to be added to the displacement of a leg between them. Of `lines` the pass of the
+/// lower station counts first, then that of the upper, then any; zero where none saw it all.
 WELLGYRO_EXPORT Eigen::Vector3d Bulge(const Site& head, std::span<const PassLine> lines,
                                       const Station& above, const Station& below);
 
