@@ -22,7 +22,7 @@ namespace {
 using testing::Find;
 
 constexpr testing::SmallHole kBendBelow{
-    .inclination_deg = 10, .to_md = 400, .accel_noise_g = 2e-5, .stations_every = 20};
+    .inclination_deg = 10, .to_md = 400, .rpm = 1, .accel_noise_g = 2e-5, .stations_every = 20};
 
 /// Straight to 150 m, 20 deg more at 250 m, straight on.
 Simulation Bent() {
@@ -35,6 +35,8 @@ Simulation Bent() {
 Job BentJob() {
   Job job = JobOf(kBendBelow);
   job.errors.depth_sigma = 0.1;
+  job.errors.gyro_bias_sigma = 0.1 * units::kDegPerHour;
+  job.errors.accel_bias_sigma = 5e-4;
   return job;
 }
 
