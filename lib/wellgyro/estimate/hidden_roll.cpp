@@ -14,6 +14,7 @@
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/estimate/roll_window.h"
+#include "wellgyro/math/median.h"
 #include "wellgyro/math/square.h"
 
 namespace wellgyro {
@@ -45,7 +46,12 @@ constexpr double kOffWindow = 0.2;
 // the best paths have joined. It bounds the memory to 660 kSteps kSpins bytes, 8 MB.
 constexpr std::size_t kPiece = 600, kAgain = 60;
 constexpr std::size_t kLeast = 10;  // knots, as a window has
-constexpr float kBarred = 1e9F;     // cost of what is not, as a tool at rest that turns
+// Neighbours of a knot, a minute to either side, and of them that tell: the median of five is right
+// with two wrong. What is below 0.3 of the Earth's horizontal rate has no direction beside the
+// gyros' bias.
+constexpr std::size_t kMinute = 60, kTelling = 5;
+constexpr double kEarthsLeast = 0.3;
+constexpr float kBarred = 1e9F;  // cost of what is not, as a tool at rest that turns
 
 /// A value for every rate (rows) and heading at the begin of a knot (columns).
 template <typename T>
@@ -89,6 +95,15 @@ Fixed FixedIn(std::span<const RollWindow> windows, const EstimateSetup& setup, d
 }
 
 bool Reads(const RunKnot& knot) { return knot.increment.level; }
+
+/// The nearest to a knot; null: there is none.
+const RollWindow* WindowAt(std::span<const RollWindow> windows, std::size_t knot) {
+  if (windows.empty()) return nullptr;
+  auto next = std::ranges::lower_bound(windows, knot, {}, &RollWindow::node);
+  if (next == windows.end()) return &windows.back();
+  if (next != windows.begin() && knot - (next - 1)->node < next->node - knot) --next;
+  return &*next;
+}
 
 std::vector<RollWindow> WindowsOf(std::span<const RunKnot> knots, const EstimateSetup& setup) {
   std::vector<RollWindow> windows;
@@ -151,15 +166,6 @@ class Stretch {
     return left;
   }
 
-  /// The nearest to a knot; null: there is none.
-  const RollWindow* WindowAt(std::size_t knot) const {
-    if (windows_.empty()) return nullptr;
-    auto next = std::ranges::lower_bound(windows_, knot, {}, &RollWindow::node);
-    if (next == windows_.end()) return &windows_.back();
-    if (next != windows_.begin() && knot - (next - 1)->node < next->node - knot) --next;
-    return &*next;
-  }
-
   /// The rate may change before a knot: cost(i) <- min over j of cost(j) + |i - j| step / change,
   /// and the j (the distance transform of Felzenszwalb and Huttenlocher, 2012).
   void ChangeRates(double change, Grid<std::uint8_t>& from) {
@@ -184,7 +190,7 @@ class Stretch {
   void Pass(std::size_t k, Grid<std::uint8_t>& from) {
     const RunKnot& knot = knots_[k];
     const double seconds = knot.increment.seconds;
-    const RollWindow* window = WindowAt(k);
+    const RollWindow* window = WindowAt(windows_, k);
     const double var = Square(setup_.gyro.angle_random_walk) / seconds + Square(kLoose * earth_);
     const double per_sigma = 1 / std::sqrt(2 * var);
     const Left left = LeftOf(knot, window != nullptr ? window->bend_L : Complex(), per_sigma);
@@ -250,19 +256,12 @@ class Stretch {
   Grid<float> costs_{};
 };
 
-}  // namespace
-
-bool RollIsHidden(const RunKnot& knot) { return !knot.increment.roll_seen && !knot.still; }
-
-bool AnyRollIsHidden(std::span<const RunKnot> knots) {
-  return std::any_of(knots.begin(), knots.end(), RollIsHidden);
-}
-
-std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+/// By the likeliest path.
+std::vector<double> AlongPath(std::span<const RunKnot> knots, const EstimateSetup& setup,
+                              std::span<const RollWindow> windows) {
   std::vector<double> hidden(knots.size(), 0);
   if (!AnyRollIsHidden(knots)) return hidden;
   const std::vector<double> starts = SpeedStarts(knots);
-  const std::vector<RollWindow> windows = WindowsOf(knots, setup);
   const auto unseen = [&](std::size_t k) {
     return !knots[k].increment.roll_seen && knots[k].increment.seconds > 0;
   };
@@ -277,10 +276,76 @@ std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSet
       const Increment& i = knots[k].increment;
       if (knots[k].still) continue;
       const auto steps = static_cast<double>(StepsIn(spins[k - begin], i.seconds));
-      hidden[k] = (steps * kHeadingStep - i.roll_before - i.roll_after) / i.seconds;
+      hidden[k] = (steps * kHeadingStep - i.roll()) / i.seconds;
     }
   }
   return hidden;
+}
+
+/// By the rate of the nearest window.
+std::vector<double> OfWindows(std::span<const RunKnot> knots, std::span<const RollWindow> windows) {
+  std::vector<double> hidden(knots.size(), 0);
+  for (std::size_t k = 0; k < knots.size() && !windows.empty(); ++k) {
+    const Increment& i = knots[k].increment;
+    if (!RollIsHidden(knots[k]) || !(i.seconds > 0)) continue;
+    hidden[k] = WindowAt(windows, k)->rate - i.roll() / i.seconds;
+  }
+  return hidden;
+}
+
+/// Roll rate by how the gyros' reading turns from one knot's middle to the next one's [rad/s].
+double RateBetween(const Increment& a, const Increment& b) {
+  const Eigen::Vector2d &u = a.turn_M, &v = b.turn_M;
+  const double turned = -std::atan2(v.y() * u.x() - v.x() * u.y(), v.dot(u));
+  const double psi = a.roll_after + b.roll_before;
+  return (psi + WrapPi(turned - psi)) / (0.5 * (a.seconds + b.seconds));
+}
+
+/// By the median rate between neighbours, from rest to rest or for a minute to either side.
+std::vector<double> OfNeighbours(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+  const double least = kEarthsLeast * kEarthRate * std::cos(setup.site.latitude);
+  const auto reads = [&](std::size_t k) {
+    const Increment& i = knots[k].increment;
+    return RollIsHidden(knots[k]) && i.turn_M.norm() > least * i.seconds;
+  };
+  std::vector<double> hidden(knots.size(), 0), near;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    if (!RollIsHidden(knots[k])) continue;
+    near.clear();
+    std::size_t begin = k, end = k;
+    while (begin > 0 && begin + kMinute > k && !knots[begin - 1].still) --begin;
+    while (end + 1 < knots.size() && end < k + kMinute && !knots[end + 1].still) ++end;
+    for (std::size_t j = begin; j < end; ++j) {
+      if (!reads(j) || !reads(j + 1)) continue;
+      near.push_back(RateBetween(knots[j].increment, knots[j + 1].increment));
+    }
+    if (near.size() < kTelling) continue;
+    const Increment& i = knots[k].increment;
+    hidden[k] = Median(near) - i.roll() / i.seconds;
+  }
+  return hidden;
+}
+
+}  // namespace
+
+bool RollIsHidden(const RunKnot& knot) { return !knot.increment.roll_seen && !knot.still; }
+
+bool AnyRollIsHidden(std::span<const RunKnot> knots) {
+  return std::any_of(knots.begin(), knots.end(), RollIsHidden);
+}
+
+std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
+  return AlongPath(knots, setup, WindowsOf(knots, setup));
+}
+
+std::vector<std::vector<double>> HiddenRolls(std::span<const RunKnot> knots,
+                                             const EstimateSetup& setup) {
+  const std::vector<RollWindow> windows = WindowsOf(knots, setup);
+  std::vector<std::vector<double>> rolls = {AlongPath(knots, setup, windows)};
+  if (!AnyRollIsHidden(knots)) return rolls;
+  rolls.push_back(OfWindows(knots, windows));
+  rolls.push_back(OfNeighbours(knots, setup));
+  return rolls;
 }
 
 }  // namespace wellgyro

@@ -25,4 +25,10 @@ bool AnyRollIsHidden(std::span<const RunKnot> knots);
 /// Earth's rate stands out of gyros and bends by three sigmas a second, up to 21 rpm.
 std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSetup& setup);
 
+/// That path, and for a roll that swings, of which it follows a part, the rates in the middle of
+/// the swing: by the nearest windows, and by the median of the neighbours' rates. Near vertical a
+/// solution has many minima; the evidence chooses among those that these lead to.
+std::vector<std::vector<double>> HiddenRolls(std::span<const RunKnot> knots,
+                                             const EstimateSetup& setup);
+
 }  // namespace wellgyro

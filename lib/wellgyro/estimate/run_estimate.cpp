@@ -191,9 +191,13 @@ std::vector<NorthClosure> ClosuresOf(RunSolver& solved) {
 std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
                                  std::span<const Start> starts) {
   if (starts.empty()) return GuessesOfHeadings(setup, knots);
-  const std::vector<double> hidden_roll = HiddenRoll(knots, setup);
+  const std::vector<std::vector<double>> rolls = HiddenRolls(knots, setup);
   std::vector<NodeGuess> guesses;
-  for (const Start& start : starts) guesses.push_back(GuessOf(setup, knots, start, hidden_roll));
+  for (const Start& start : starts) {
+    for (const std::vector<double>& roll : rolls) {
+      guesses.push_back(GuessOf(setup, knots, start, roll));
+    }
+  }
   return guesses;
 }
 
@@ -282,7 +286,9 @@ bool CountIn(const Solution& rival, double evidence, const RunSolver& best, RunE
     if (d.norm() > kVagueAngle) return false;
     result.cov_phi_T[k] += weight * d * d.transpose();
   }
-  Eigen::VectorXd before;
+  // Solutions of a run's later part begin at one state, and so differ by nothing at a node marked
+  // before it.
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size()));
   for (LinkedErrors& mark : result.marked) {
     const Eigen::VectorXd d = Towards(rival, best, mark.node)(columns);
     mark.cov += weight * d * d.transpose();
