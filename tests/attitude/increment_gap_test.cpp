@@ -101,6 +101,19 @@ TEST(IncrementKnots, StayWhatTheyWereWhenSamplesFollowAFlush) {
   for (std::size_t k = 0; k < a.size(); ++k) EXPECT_TRUE(Same(a[k], b[k])) << k;
 }
 
+// A sample a nanosecond off its time is looked at more closely than one that is right behind the
+// one before, and summed to the same. The last of each second, where knots are cut, is on time.
+TEST(IncrementKnots, AreTheSameByAClockThatJitters) {
+  const auto even = Steady(1000, 30);
+  auto jittering = even;
+  for (std::size_t k = 0; k < even.size(); k += 4) ++jittering[k].stamp.tool_time.ns;
+  const auto a = motion::Increments(even, 1, GapOptions());
+  const auto b = motion::Increments(jittering, 1, GapOptions());
+  ASSERT_EQ(a.size(), 30u);
+  ASSERT_EQ(b.size(), a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_TRUE(Same(a[k], b[k])) << k;
+}
+
 TEST(IncrementKnots, AllocateNothingOnTheWay) {
   const auto samples = Steady(20, 60);
   IncrementBuilder builder(GapOptions());

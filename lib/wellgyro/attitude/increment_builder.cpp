@@ -100,6 +100,8 @@ struct IncrementBuilder::State {
 
   Block& NewBlock();
   void CloseBlock();
+  void CloseFull();
+  void Join(const SampleStamp& stamp);
   void AddGap(std::int64_t ns);
   void Advance(bool to_end);
   double BendOf(std::uint64_t k) const;
@@ -126,6 +128,33 @@ void IncrementBuilder::State::CloseBlock() {
   open.Close(block);
   open_begin_ns = block.end_ns();
   phase.Read(blocks);
+}
+
+inline void IncrementBuilder::State::CloseFull() {
+  if (open.samples() < block_samples) return;
+  CloseBlock();
+  Advance(false);
+}
+
+// Before a sample that can follow, but perhaps behind a gap or with another period.
+void IncrementBuilder::State::Join(const SampleStamp& stamp) {
+  Following f;
+  if (started) f = Follows(open.last(), stamp);
+  EndLongKnot();
+  if (started && !f.breaks) {
+    CloseFull();
+    return;
+  }
+  const SampleStamp& last = open.last();
+  gap_begin = started ? last.tool_time + Duration{last.period_ns} : stamp.tool_time;
+  CloseBlock();
+  gap_begin_ns = open_begin_ns;
+  gap_ns = f.gap_ns;
+  if (f.gap_ns > 0) AddGap(f.gap_ns);
+  lost += f.lost;
+  breaks = true;
+  block_samples = std::max(1, static_cast<int>(kBlockSeconds / (1e-9 * stamp.period_ns) + 1e-6));
+  Advance(false);
 }
 
 void IncrementBuilder::State::AddGap(std::int64_t ns) {
@@ -200,7 +229,7 @@ void IncrementBuilder::State::Advance(bool to_end) {
   }
 }
 
-void IncrementBuilder::State::EndLongKnot() {
+inline void IncrementBuilder::State::EndLongKnot() {
   if (!started) return;
   if (last_begin_ns - last_cut_ns >= kKnotNs || blocks.end() - last_cut_block >= kKnotBlocks) {
     AddCut(last_begin_ns, open.last().tool_time);
@@ -239,25 +268,14 @@ bool CanFollow(const SampleStamp* before, const ImuSample& sample) {
 
 bool IncrementBuilder::Push(const ImuSample& sample, bool rests) {
   State& s = *state_;
-  if (!CanFollow(s.started ? &s.open.last() : nullptr, sample)) return false;
-  Following f;
-  if (s.started) f = Follows(s.open.last(), sample.stamp);
-  s.EndLongKnot();
-  if (!s.started || f.breaks) {
-    s.gap_begin = s.started ? s.open.last().tool_time + Duration{s.open.last().period_ns}
-                            : sample.stamp.tool_time;
-    s.CloseBlock();
-    s.gap_begin_ns = s.open_begin_ns;
-    s.gap_ns = f.gap_ns;
-    if (f.gap_ns > 0) s.AddGap(f.gap_ns);
-    s.lost += f.lost;
-    s.breaks = true;
-    s.block_samples =
-        std::max(1, static_cast<int>(kBlockSeconds / (1e-9 * sample.stamp.period_ns) + 1e-6));
-    s.Advance(false);
-  } else if (s.open.samples() >= s.block_samples) {
-    s.CloseBlock();
-    s.Advance(false);
+  if (s.started && IsNext(s.open.last(), sample.stamp)) {
+    // Nearly every sample of a fast stream: the next, and no more is to be asked.
+    if (!IsFinite(sample)) return false;
+    s.EndLongKnot();
+    s.CloseFull();
+  } else {
+    if (!CanFollow(s.started ? &s.open.last() : nullptr, sample)) return false;
+    s.Join(sample.stamp);
   }
   s.last_begin_ns = s.open_begin_ns + s.open.samples() * std::int64_t{sample.stamp.period_ns};
   s.open.Add(sample, rests);

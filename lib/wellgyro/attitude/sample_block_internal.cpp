@@ -25,16 +25,11 @@ Turned Turn(const Moments& m, double rate, double bend) {
 
 void BlockSum::Add(const ImuSample& sample, bool rests) {
   if (samples_ == 0) seq_begin_ = sample.stamp.seq;
-  const double k = samples_++, k2 = k * k;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const double w = sample.w_IT_T[i], f = sample.f_T[i];
-    sum_[0][kWx + i] += w;
-    sum_[0][kFx + i] += f;
-    sum_[1][kWx + i] += k * w;
-    sum_[1][kFx + i] += k * f;
-    sum_[2][kWx + i] += k2 * w;
-    sum_[2][kFx + i] += k2 * f;
-  }
+  const SixAxes axes = AxesOf(sample);
+  const double k = samples_++;
+  sum_[0] += axes;
+  sum_[1] += k * axes;
+  sum_[2] += k * k * axes;
   Note(sample, sample.stamp, rests);
 }
 

@@ -15,6 +15,18 @@ inline constexpr std::size_t kCacheLine = 64;
 /// Rates x, y, z [rad/s] and specific forces x, y, z [m/s^2] of a sample, in T.
 using SixAxes = Eigen::Array<double, 6, 1>;
 
+/// Written out, so that a compiler loads two at a time.
+inline SixAxes AxesOf(const ImuSample& s) {
+  return SixAxes{{s.w_IT_T[0], s.w_IT_T[1], s.w_IT_T[2], s.f_T[0], s.f_T[1], s.f_T[2]}};
+}
+
+/// `b` comes right behind `a`: of the same source, by number, and on the tool's clock to the
+/// nanosecond.
+inline bool IsNext(const SampleStamp& a, const SampleStamp& b) {
+  return b.seq - a.seq == 1 && (b.tool_time - a.tool_time).ns == a.period_ns &&
+         b.session == a.session && b.tool == a.tool && b.period_ns == a.period_ns;
+}
+
 /// Samples right behind each other, so that what holds for one need not be asked for each: by
 /// number, and on both clocks each begins where the one before ends. But for number and times
 /// their stamps are the same, and so are has_gz and has_mag. A view; what it shows is another's.

@@ -57,13 +57,6 @@ bool SameUtc(const SampleStamp& a, const SampleStamp& b) {
   return std::abs(utc - tool) <= 1e9 + 2e-4 * std::abs(tool);
 }
 
-/// Right behind `before`: nothing is to be sorted.
-bool IsNext(const SampleStamp& before, const SampleStamp& stamp) {
-  return stamp.seq == before.seq + 1 && stamp.session == before.session &&
-         stamp.period_ns == before.period_ns &&
-         (stamp.tool_time - before.tool_time).ns == before.period_ns;
-}
-
 /// `b` cannot be of the same count and clock as `a`.
 bool Contradicts(const SampleStamp& a, const SampleStamp& b) {
   if (a.session != b.session) return true;
