@@ -13,6 +13,7 @@
 #include "wellgyro/bus/decode.h"
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/field_writer_internal.h"
+#include "wellgyro/record/sample_block.h"
 
 namespace wellgyro {
 namespace {
@@ -91,6 +92,9 @@ bool ReadArrays(const ImuHead& head, std::span<const std::byte> bytes, ImuSample
   const bool has_gz = head.n_gz > 0;
   const bool has_mag = head.n_mag > 0;
   for (std::size_t k = 0; k < n; ++k) {
+    // Of a log in memory the arrays are on their way while stamps are written, and then the head of
+    // the next message.
+    __builtin_prefetch(bytes.data() + std::min(k * kCacheLine, bytes.size()));
     ImuSample& sample = out[k];
     sample.stamp = head.stamp;
     Advance(sample.stamp, static_cast<std::int64_t>(k));

@@ -41,14 +41,15 @@ SpikeFilter::Done SpikeFilter::Push(std::span<const ImuSample> samples) {
   const std::size_t before = size_;
   SetFloor(samples.front().stamp.period_ns);
   const SampleStamp* last = nullptr;
+  std::size_t size = before;
   for (const ImuSample& sample : samples.first(std::min(samples.size(), kMost))) {
     if (last != nullptr && !Follows(*last, sample.stamp)) break;
     last = &sample.stamp;
-    axes_[size_] << sample.w_IT_T, sample.f_T;
-    mended_[size_] = {};
-    has_gz_[size_] = sample.has_gz;
-    ++size_;
+    axes_[size] = AxesOf(sample);
+    mended_[size] = {};
+    has_gz_[size++] = sample.has_gz;
   }
+  size_ = size;
   last_ = *last;
   const std::size_t end = std::max(size_, kMiddle) - kMiddle, begin = std::max(done_, kMiddle);
   if (begin < end && AnyDeparts(begin, end)) {

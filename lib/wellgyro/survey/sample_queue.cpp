@@ -57,6 +57,14 @@ bool SameUtc(const SampleStamp& a, const SampleStamp& b) {
   return std::abs(utc - tool) <= 1e9 + 2e-4 * std::abs(tool);
 }
 
+/// Into the nearest cache.
+void Fetch(const ImuSample& sample) {
+  const auto bytes = std::as_bytes(std::span(&sample, 1));
+  for (std::size_t i = 0; i + kCacheLine <= bytes.size(); i += kCacheLine) {
+    __builtin_prefetch(&bytes[i]);
+  }
+}
+
 /// `b` cannot be of the same count and clock as `a`.
 bool Contradicts(const SampleStamp& a, const SampleStamp& b) {
   if (a.session != b.session) return true;
@@ -117,17 +125,8 @@ void SampleQueue::Pop(std::size_t count) {
   head_ = (head_ + count) & mask_;
   size_ -= count;
   held_ += count;
-  FetchAhead();
   last_is_old_ = old_session_ > 0;
   old_session_ -= std::min(old_session_, count);
-}
-
-/// At 10 kHz the ring is larger than the near caches, and each block begins on pages that no
-/// hardware looks ahead to.
-void SampleQueue::FetchAhead() const {
-  const std::size_t count = std::min({size_, ring_.size() - head_, SampleBlock::kMost});
-  const auto bytes = std::as_bytes(std::span(ring_).subspan(head_, count));
-  for (std::size_t i = 0; i < bytes.size(); i += kCacheLine) __builtin_prefetch(&bytes[i]);
 }
 
 std::span<ImuSample> SampleQueue::Held() {
@@ -137,17 +136,20 @@ std::span<ImuSample> SampleQueue::Held() {
 
 std::size_t SampleQueue::Append(std::span<const ImuSample> batch) {
   if (!back_ || !stories_.empty()) return 0;
+  while (room() < batch.size()) Grow();
   const SampleStamp* before = &*back_;
+  UtcTime newest = newest_;
   std::size_t n = 0;
-  // Times out of reach must not be subtracted.
+  // At 10 kHz the ring is larger than the near caches. So each is copied while the next is looked
+  // at, and as many of the oldest, which these let go, are on their way meanwhile. Times out of
+  // reach must not be subtracted.
   for (; n < batch.size() && IsPossible(batch[n]) && IsNext(*before, batch[n].stamp); ++n) {
     before = &batch[n].stamp;
-    newest_ = std::max(newest_, before->utc);
+    newest = std::max(newest, before->utc);
+    At(size_ + n) = batch[n];
+    Fetch(At(n));
   }
-  while (room() < n) Grow();
-  const std::size_t begin = (head_ + size_) & mask_, room = std::min(n, ring_.size() - begin);
-  std::copy_n(batch.data(), room, ring_.data() + begin);
-  std::copy_n(batch.data() + room, n - room, ring_.data());
+  newest_ = newest;
   size_ += n;
   counts_.accepted += static_cast<std::int64_t>(n);
   back_ = *before;

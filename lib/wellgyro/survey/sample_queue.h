@@ -128,7 +128,6 @@ class WELLGYRO_EXPORT SampleQueue {
   void DropOld();
   void Take(std::size_t position, const ImuSample& sample);
   void Grow();
-  void FetchAhead() const;
   void NoteGap(const SampleStamp& next, bool jumps);
   bool InGap(std::int64_t seq) const;
 
