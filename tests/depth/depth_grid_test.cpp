@@ -98,8 +98,9 @@ TEST(DepthGrid, OfABlockIsThatOfItsInstants) {
     DepthGrid one(track), many(track);
     std::vector<UtcTime> utc;
     for (int i = 0; i < 60; ++i) utc.push_back(Utc(begin + 0.0043 * i));
-    AlongHoleBlock block;
-    many.At(utc, block);
+    AlongHoleBlock block, moving;
+    many.At(utc, DepthGrid::Asks::kAll, block);
+    many.At(utc, DepthGrid::Asks::kSpeed, moving);
     for (std::size_t i = 0; i < utc.size(); ++i) {
       const AlongHole a = one.At(utc[i]), b = block.At(i);
       EXPECT_EQ(a.known, b.known) << begin << " " << i;
@@ -109,6 +110,11 @@ TEST(DepthGrid, OfABlockIsThatOfItsInstants) {
       EXPECT_EQ(a.sigma_md, b.sigma_md) << begin << " " << i;
       EXPECT_EQ(a.sigma_speed, b.sigma_speed) << begin << " " << i;
       EXPECT_EQ(a.sigma_acceleration, b.sigma_acceleration) << begin << " " << i;
+      const AlongHole speed = moving.At(i);
+      EXPECT_EQ(a.known, speed.known) << begin << " " << i;
+      EXPECT_EQ(a.md, speed.md) << begin << " " << i;
+      EXPECT_EQ(a.speed, speed.speed) << begin << " " << i;
+      EXPECT_EQ(a.sigma_speed, speed.sigma_speed) << begin << " " << i;
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -175,6 +176,39 @@ TEST(DepthMotion, TellsLateMarksFromPromptOnes) {
     EXPECT_NEAR(found.lag, lag, 0.1);
     EXPECT_GT(std::abs(found.lag), 8 * found.sigma_lag);
   }
+}
+
+// Of a block the track is asked for a mark once for all samples in front of it: by UTC that steps
+// back, and behind gaps, too.
+TEST(DepthMotion, BlocksAreTheirSamples) {
+  Random random(7);
+  DepthMotion alone, blocks;
+  DepthTrack track;
+  const UtcTime begin{1'700'000'000'000'000'000};
+  constexpr int kBlock = 100, kSamples = 400 * kBlock;
+  for (int k = 0; k < kSamples / 10; ++k) {
+    PushMark(begin + Duration::Seconds(0.1 * k), Depth(0.1 * k) + 0.01 * random.Normal(), track);
+  }
+  std::vector<UtcTime> utc(kBlock);
+  std::vector<SixAxes> samples(kBlock);
+  for (int k = 0; k < kSamples; ++k) {
+    const double gap = k < kSamples / 4 ? 0 : k < kSamples / 2 ? 0.3 : 3;
+    const double late = k % 777 == 0 ? -2e-3 : 1e-8 * random.Normal();
+    const auto i = static_cast<std::size_t>(k % kBlock);
+    utc[i] = begin + Duration::Seconds(0.01 * k + late + gap);
+    samples[i] << 1e-3, 2e-3, 0, 3 + random.Normal(), 4, -8 + 0.1 * random.Normal();
+    alone.Feel({&utc[i], 1}, Duration::Seconds(0.01), {&samples[i], 1}, track);
+    if (i + 1 == kBlock) blocks.Feel(utc, Duration::Seconds(0.01), samples, track);
+  }
+  const DepthMotion::Found a = alone.found(), b = blocks.found();
+  EXPECT_GT(a.compared, 150);
+  EXPECT_EQ(a.compared, b.compared);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.step_md, b.step_md);
+  EXPECT_EQ(a.sigma_step, b.sigma_step);
+  EXPECT_EQ(a.lag, b.lag);
+  EXPECT_EQ(a.scale, b.scale);
+  EXPECT_EQ(a.sigma_scale, b.sigma_scale);
 }
 
 TEST(DepthMotion, AReZeroIsNoStep) {

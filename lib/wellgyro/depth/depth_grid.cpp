@@ -48,33 +48,37 @@ void DepthGrid::Enter(UtcTime utc) {
 AlongHole DepthGrid::Asked(UtcTime utc) const { return known_ ? track_->At(utc) : AlongHole{}; }
 
 /// The polynomials of the present cell at some instants in it, which stand from `begin` on.
-void DepthGrid::Smooth(std::span<const UtcTime> utc, std::size_t begin,
+void DepthGrid::Smooth(std::span<const UtcTime> utc, std::size_t begin, Asks asks,
                        AlongHoleBlock& along) const {
   const auto n = static_cast<Eigen::Index>(utc.size()), at = static_cast<Eigen::Index>(begin);
   AlongHoleBlock::Values seconds;
+  // A cell's nanoseconds are less than 2^31, of which two are converted at a time.
+  static_assert(kStep.ns < INT32_MAX);
   for (Eigen::Index i = 0; i < n; ++i) {
-    seconds[i] = static_cast<double>(utc[static_cast<std::size_t>(i)].ns - begin_ns_) * 1e-9;
+    const std::int64_t since = utc[static_cast<std::size_t>(i)].ns - begin_ns_;
+    seconds[i] = static_cast<double>(static_cast<std::int32_t>(since)) * 1e-9;
   }
   const auto t = seconds.head(n);
   const Blend& c = blend_;
   along.md.segment(at, n) =
       (c.md[0] + t * (c.md[1] + t * (c.md[2] + t * c.md[3]))).max(c.md_low).min(c.md_high);
   along.speed.segment(at, n) = c.speed[0] + t * (c.speed[1] + t * c.speed[2]);
+  along.sigma_speed.segment(at, n) = c.begin[2] + t * c.slope[2];
+  along.known.segment(at, n) = true;
+  if (asks == Asks::kSpeed) return;
   along.acceleration.segment(at, n) = c.begin[0] + t * c.slope[0];
   along.sigma_md.segment(at, n) = c.begin[1] + t * c.slope[1];
-  along.sigma_speed.segment(at, n) = c.begin[2] + t * c.slope[2];
   along.sigma_acceleration.segment(at, n) = c.begin[3] + t * c.slope[3];
-  along.known.segment(at, n) = true;
 }
 
-void DepthGrid::At(std::span<const UtcTime> utc, AlongHoleBlock& along) {
+void DepthGrid::At(std::span<const UtcTime> utc, Asks asks, AlongHoleBlock& along) {
   for (std::size_t i = 0; i < utc.size();) {
     along.Set(i, At(utc[i]));
     const std::size_t begin = i++;
     if (!smooth_) continue;
     const UtcTime end{begin_ns_ + kStep.ns};
     while (i < utc.size() && utc[begin] <= utc[i] && utc[i] < end) ++i;
-    if (i > begin + 1) Smooth(utc.subspan(begin, i - begin), begin, along);
+    if (i > begin + 1) Smooth(utc.subspan(begin, i - begin), begin, asks, along);
   }
 }
 

@@ -41,8 +41,10 @@ class WELLGYRO_EXPORT DepthGrid {
     if (since >= static_cast<std::uint64_t>(kStep.ns)) Enter(utc);
     return smooth_ ? Smooth(static_cast<double>(utc.ns - begin_ns_) * 1e-9) : Asked(utc);
   }
-  /// At() each of `utc`, SampleBlock::kMost at most.
-  void At(std::span<const UtcTime> utc, AlongHoleBlock& along);
+  /// What of the motion is asked for: all, or depth, speed and the speed's sigma.
+  enum class Asks { kAll, kSpeed };
+  /// At() each of `utc`, SampleBlock::kMost at most; what is not asked for may be left as it was.
+  void At(std::span<const UtcTime> utc, Asks asks, AlongHoleBlock& along);
 
  private:
   struct Node {
@@ -61,7 +63,8 @@ class WELLGYRO_EXPORT DepthGrid {
   bool CellIsFinal(UtcTime utc, UtcTime until);
   void Enter(UtcTime utc);
   AlongHole Asked(UtcTime utc) const;
-  void Smooth(std::span<const UtcTime> utc, std::size_t begin, AlongHoleBlock& along) const;
+  void Smooth(std::span<const UtcTime> utc, std::size_t begin, Asks asks,
+              AlongHoleBlock& along) const;
   const AlongHole& NodeAt(std::int64_t index);
   static Blend BlendOf(const AlongHole& a, const AlongHole& b);
   AlongHole Smooth(double t) const {

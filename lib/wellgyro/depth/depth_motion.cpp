@@ -26,6 +26,9 @@ constexpr double kNoStep = 1e-3;
 // Steps before their scatter is known, then to sqrt((pi/2 - 1) / 20) = 17 %.
 constexpr std::int64_t kFirst = 20;
 
+/// Nothing that a sample's force does not tell of.
+bool IsBridged(Duration gap) { return gap <= kGap && Duration{-gap.ns} <= kGap; }
+
 /// The way between the middle two less the mean of the ways beside it, of values at four times.
 double Bow(const std::array<double, 4>& t, const std::array<double, 4>& x) {
   const auto slope = [&](std::size_t i) { return (x[i + 1] - x[i]) / (t[i + 1] - t[i]); };
@@ -42,43 +45,82 @@ double CommonStep(double a, double b) {
 
 void DepthMotion::Restart() { passed_count_ = 0; }
 
-void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period,
-                       std::span<const SixAxes> samples, const DepthTrack& track) {
-  const double length = period.seconds();
-  Fall fall = fall_;
-  for (std::size_t i = 0; i < utc.size(); ++i) {
-    const SixAxes& s = samples[i];
-    const double change = (s[1] * s[3] - s[0] * s[4]) * length;
-    const double f_z = s[5] - fall.gravity - change / 2;
-    fall.gravity += change;
-    const Duration gap = felt_until_ ? utc[i] - *felt_until_ : Duration{};
-    if (gap > kGap || Duration{-gap.ns} > kGap) {
-      passed_count_ = 0;
-      fall.speed = fall.way = 0;
-    }
-    // A gap up to kGap is bridged with the force of the sample behind it. So is what the clocks'
-    // tie moves UTC by, either way: in 10 s of fall 3 ms between its time and the marks' are 0.3 m.
-    const bool bridged = felt_until_ && gap <= kGap && Duration{-gap.ns} <= kGap;
-    const UtcTime begin = bridged ? *felt_until_ : utc[i];
-    const double seconds = bridged ? length + gap.seconds() : length;
-    felt_until_ = utc[i] + period;
-    if (!last_mark_ || *last_mark_ + kMarksApart < *felt_until_) {
-      fall_ = fall;
-      PassMark(begin, f_z, track);
-      fall = fall_;
-    }
-    fall.way += (fall.speed + f_z * seconds / 2) * seconds;
-    fall.speed += f_z * seconds;
-  }
-  fall_ = fall;
+/// Of a sample: the force along the tool, less gravity's share at its middle.
+inline double DepthMotion::Fall::Force(const SixAxes& s, double length) {
+  const double change = (s[1] * s[3] - s[0] * s[4]) * length;
+  const double f_z = s[5] - gravity - change / 2;
+  gravity += change;
+  return f_z;
 }
 
-/// The mark, if there is one to be compared, in a sample that begins at `begin`.
-void DepthMotion::PassMark(UtcTime begin, double f_z, const DepthTrack& track) {
+inline void DepthMotion::Fall::Go(double f_z, double seconds) {
+  way += (speed + f_z * seconds / 2) * seconds;
+  speed += f_z * seconds;
+}
+
+void DepthMotion::Feel(std::span<const UtcTime> utc, Duration period,
+                       std::span<const SixAxes> samples, const DepthTrack& track) {
+  NoMark none = NoMarkYet();
+  for (std::size_t i = 0; i < utc.size(); ++i) {
+    i += FeelOn(utc.subspan(i), period, samples.subspan(i), none);
+    if (i < utc.size()) none = FeelOne(utc[i], period, samples[i], track);
+  }
+}
+
+/// Feels the samples at the begin that adjoin each other and pass no mark, nearly all there are;
+/// how many that is.
+std::size_t DepthMotion::FeelOn(std::span<const UtcTime> utc, Duration period,
+                                std::span<const SixAxes> samples, const NoMark& none) {
+  if (!felt_until_) return 0;
+  const double length = period.seconds();
+  UtcTime begin = *felt_until_;
+  Fall fall = fall_;
+  std::size_t i = 0;
+  for (; i < utc.size(); ++i) {
+    const Duration gap = utc[i] - begin;
+    const UtcTime end = utc[i] + period;
+    if (!IsBridged(gap) || !none.Holds(begin, end)) break;
+    fall.Go(fall.Force(samples[i], length), length + gap.seconds());
+    begin = end;
+  }
+  felt_until_ = begin;
+  fall_ = fall;
+  return i;
+}
+
+/// One sample, whatever it brings. Where the next may pass no mark.
+DepthMotion::NoMark DepthMotion::FeelOne(UtcTime utc, Duration period, const SixAxes& sample,
+                                         const DepthTrack& track) {
+  const double length = period.seconds(), f_z = fall_.Force(sample, length);
+  const Duration gap = felt_until_ ? utc - *felt_until_ : Duration{};
+  if (!IsBridged(gap)) {
+    passed_count_ = 0;
+    fall_.speed = fall_.way = 0;
+  }
+  // A gap up to kGap is bridged with the force of the sample behind it. So is what the clocks'
+  // tie moves UTC by, either way: in 10 s of fall 3 ms between its time and the marks' are 0.3 m.
+  const bool bridged = felt_until_ && IsBridged(gap);
+  const UtcTime begin = bridged ? *felt_until_ : utc;
+  felt_until_ = utc + period;
+  NoMark none = NoMarkYet();
+  if (!none.Holds(begin, *felt_until_)) none = PassMark(begin, f_z, track);
+  fall_.Go(f_z, bridged ? length + gap.seconds() : length);
+  return none;
+}
+
+/// Marks are compared that are far enough behind the last.
+DepthMotion::NoMark DepthMotion::NoMarkYet() const {
+  if (!last_mark_) return {};
+  return {UtcTime{INT64_MIN}, *last_mark_ + kMarksApart};
+}
+
+/// The mark, if there is one to be compared, in a sample that begins at `begin`. Where no other is.
+DepthMotion::NoMark DepthMotion::PassMark(UtcTime begin, double f_z, const DepthTrack& track) {
   const UtcTime wanted = last_mark_ ? std::max(begin, *last_mark_ + kMarksApart) : begin;
-  if (wanted >= *felt_until_) return;
+  if (wanted >= *felt_until_) return NoMarkYet();
   const std::optional<MarkRead> mark = track.FirstMark(wanted);
-  if (!mark || mark->utc >= *felt_until_) return;
+  if (!mark) return {begin, UtcTime{INT64_MAX}};
+  if (mark->utc >= *felt_until_) return {begin, mark->utc};
   const double t = (mark->utc - begin).seconds();
   last_mark_ = mark->utc;
   if (!first_md_) first_md_ = mark->md;
@@ -86,6 +128,7 @@ void DepthMotion::PassMark(UtcTime begin, double f_z, const DepthTrack& track) {
   const double way = fall_.way + (fall_.speed + f_z * t / 2) * t;
   Pass({mark->utc, mark->md, fall_.speed + f_z * t, way});
   FallFromOldest(begin);
+  return NoMarkYet();
 }
 
 void DepthMotion::Pass(const Passed& passed) {

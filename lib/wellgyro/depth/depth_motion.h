@@ -67,8 +67,20 @@ class WELLGYRO_EXPORT DepthMotion {
   struct Fall {
     double speed = 0, way = 0;
     double gravity = 0;  ///< change of its share along the tool, as the gyros tell it [m/s^2]
+
+    double Force(const SixAxes& sample, double length);
+    void Go(double f_z, double seconds);
   };
-  void PassMark(UtcTime begin, double f_z, const DepthTrack& track);
+  /// A time in which no mark is to be compared, of the marks that are in.
+  struct NoMark {
+    UtcTime from{INT64_MAX}, until{INT64_MIN};
+    bool Holds(UtcTime begin, UtcTime end) const { return from <= begin && end <= until; }
+  };
+  std::size_t FeelOn(std::span<const UtcTime> utc, Duration period,
+                     std::span<const SixAxes> samples, const NoMark& none);
+  NoMark FeelOne(UtcTime utc, Duration period, const SixAxes& sample, const DepthTrack& track);
+  NoMark NoMarkYet() const;
+  NoMark PassMark(UtcTime begin, double f_z, const DepthTrack& track);
   void Pass(const Passed& passed);
   void FallFromOldest(UtcTime now);
   void Compare();

@@ -6,6 +6,13 @@
 #include <Eigen/Core>
 
 namespace wellgyro {
+namespace {
+
+Eigen::Map<const Eigen::ArrayXd> Depths(std::span<const double> md) {
+  return {md.data(), static_cast<Eigen::Index>(md.size())};
+}
+
+}  // namespace
 
 PassTracker::PassTracker(const PassSetup& setup) : setup_(setup) {
   if (!(setup.first_move > 0 && setup.first_move <= setup.reversal)) {
@@ -90,7 +97,7 @@ const PassState& PassTracker::Push(UtcTime utc, double md) {
 
 std::optional<double> PassTracker::FurthestWithin(std::span<const double> md) const {
   if (!started_ || restart_ || md.empty()) return std::nullopt;
-  const Eigen::Map<const Eigen::ArrayXd> depths(md.data(), static_cast<Eigen::Index>(md.size()));
+  const auto depths = Depths(md);
   const double low = depths.minCoeff(), high = depths.maxCoeff();
   switch (state_.pass) {
     case Pass::kStationary: {
@@ -119,9 +126,8 @@ const PassState& PassTracker::Push(std::span<const UtcTime> utc, std::span<const
   const double furthest = *FurthestWithin(md);
   state_.begins = false;
   if (state_.pass == Pass::kStationary) {
-    const auto [low, high] = std::ranges::minmax(md);
-    md_low_ = std::min(md_low_, low);
-    md_high_ = std::max(md_high_, high);
+    md_low_ = std::min(md_low_, Depths(md).minCoeff());
+    md_high_ = std::max(md_high_, Depths(md).maxCoeff());
     utc_furthest_ = utc.back();
   } else if (furthest != state_.md) {
     const auto first = std::ranges::find(md, furthest) - md.begin();

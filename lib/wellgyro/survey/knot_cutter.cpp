@@ -255,22 +255,15 @@ void KnotCutter::Append(const LocatedBlock& block, std::size_t at, std::size_t c
   const SampleBlock samples = block.samples.Part(at, count);
   const std::size_t last = at + count - 1;
   Current& c = *current_;
-  Eigen::Vector2d from = c.sample.f_T.head<2>();
-  for (const SixAxes& axes : samples.axes) {
-    const Eigen::Vector2d to = axes.segment<2>(3);
-    summary_.samples_aliased += TurnsFar(from, to);
-    from = to;
-  }
-  const auto rests = [&block](std::size_t i) {
-    return std::abs(block.middle.speed[static_cast<Eigen::Index>(i)]) < kRestSpeed;
+  summary_.samples_aliased += FarTurns(c.sample.f_T.head<2>(), samples.axes);
+  const auto rests = [&block](std::size_t begin, std::size_t n) {
+    const auto speed =
+        block.middle.speed.segment(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(n));
+    return speed.abs().maxCoeff() < kRestSpeed;
   };
-  if (count > 1) {
-    bool rest = true;
-    for (std::size_t i = at; i < last; ++i) rest &= rests(i);
-    feed_.Append(samples.Part(0, count - 1), rest);
-  }
+  if (count > 1) feed_.Append(samples.Part(0, count - 1), rests(at, count - 1));
   c.begin = samples.last().tool_time;
-  c.rests = rests(last);
+  c.rests = rests(last, 1);
   c.sample = samples.samples.back();
   c.utc = block.utc[last];
   c.utc_end = c.utc + Duration{c.period_ns};

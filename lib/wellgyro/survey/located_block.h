@@ -10,7 +10,7 @@
 namespace wellgyro {
 
 /// Samples with the UTC of their begins and the motion of the sensor point along the hole there and
-/// at their middles.
+/// at their middles, of which depth, speed and the speed's sigma may be all.
 struct LocatedBlock {
   SampleBlock samples;
   std::array<UtcTime, SampleBlock::kMost> utc;

@@ -139,10 +139,10 @@ void SampleIntake::Admit() {
   const Duration period{first.period_ns};
   const std::span<UtcTime> utc = std::span(out.utc).first(count);
   clock_.ToUtc(first.tool_time, period, utc);
-  depth_.At(utc, clock_.doubt(), out.begin);
+  depth_.At(utc, DepthGrid::Asks::kAll, clock_.doubt(), out.begin);
   std::array<UtcTime, SampleBlock::kMost> middle;
   for (std::size_t i = 0; i < count; ++i) middle[i] = utc[i] + Duration{period.ns / 2};
-  depth_.At(std::span(middle).first(count), clock_.doubt(), out.middle);
+  depth_.At(std::span(middle).first(count), DepthGrid::Asks::kSpeed, clock_.doubt(), out.middle);
   done_ = {done_.axes.subspan(count), done_.mended.subspan(count), 0};
   admitted_count_ = count;
 }

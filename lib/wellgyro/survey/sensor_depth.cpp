@@ -44,9 +44,11 @@ void SensorDepth::ShiftToSensor(UtcTime utc, double doubt, AlongHole& along) con
   if (doubt > 0) along.sigma_md = std::hypot(along.sigma_md, doubt * along.speed);
 }
 
-void SensorDepth::At(std::span<const UtcTime> utc, double doubt, AlongHoleBlock& along) {
-  grid_.At(utc, along);
-  if (!corrects_ && !(doubt > 0)) {
+void SensorDepth::At(std::span<const UtcTime> utc, DepthGrid::Asks asks, double doubt,
+                     AlongHoleBlock& along) {
+  const bool shifts = corrects_ || doubt > 0;  // which takes all
+  grid_.At(utc, shifts ? DepthGrid::Asks::kAll : asks, along);
+  if (!shifts) {
     along.md.head(static_cast<Eigen::Index>(utc.size())) += sensor_below_reference_;
     return;
   }

@@ -24,8 +24,8 @@ class SensorDepth {
 
   /// Depth over a sample from `utc` on is final where all marks up to `until` are in.
   bool Knows(UtcTime utc, Duration period, UtcTime until);
-  /// At each of `utc`, whose clock may be wrong by `doubt` [s].
-  void At(std::span<const UtcTime> utc, double doubt, AlongHoleBlock& along);
+  /// At each of `utc`, whose clock may be wrong by `doubt` [s]; see DepthGrid.
+  void At(std::span<const UtcTime> utc, DepthGrid::Asks asks, double doubt, AlongHoleBlock& along);
   /// From the reference point to the sensor; `doubt` as above.
   void ShiftToSensor(UtcTime utc, double doubt, AlongHole& along) const;
 
