@@ -111,8 +111,8 @@ Measured AzimuthDifference(const Station& a, const Station& b) {
   return {2 * half, std::sqrt(variance) * per_chord};
 }
 
-/// The pair with the largest |difference| / sigma, var = var_a + var_b. Passes of one tool share
-/// instrument errors: in a difference these cancel where they have one sign in both passes.
+/// The pair with the largest |difference| / sigma, var = var_a + var_b. Two passes of one tool
+/// share instrument errors: in a difference these cancel where they have one sign in both passes.
 void CheckPasses(const Job& job, std::span<const Station* const> first,
                  std::span<const Station* const> second, std::int32_t run, const std::string& name,
                  std::vector<Check>& checks) {
