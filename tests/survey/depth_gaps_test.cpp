@@ -103,6 +103,20 @@ TEST(DepthGaps, AnotherWayThatSawTheBendGivesIt) {
   EXPECT_LT(end.sigma, 1.5 * seen.sigma);
 }
 
+// Kept as it was where depth ended, gravity would be 3e-4 m/s^2 off at the end of 330 m.
+TEST(DepthGaps, GravityGoesWithThePathWhereDepthIsMissing) {
+  testing::SmallHole hole = kBendBelow;
+  hole.to_md = 500;
+  const Simulation simulation = SimulationOf(hole);
+  Sink sink;
+  const Survey survey = testing::SurveyOf(
+      simulation, BentJob(), sink, Without(TimeAt(simulation, 110), TimeAt(simulation, 440)));
+  const Check* diagnosis = Find(survey, "diagnosis");
+  ASSERT_NE(diagnosis, nullptr);
+  ASSERT_TRUE(diagnosis->value.has_value());
+  EXPECT_EQ(diagnosis->verdict, Verdict::kPass) << diagnosis->limit_source;
+}
+
 // A job may allow marks to be far apart; where the tool rests between them, depth is wrong by tens
 // of metres.
 TEST(DepthGaps, DepthsGuessedBetweenMarksMoveTheWayBelow) {
