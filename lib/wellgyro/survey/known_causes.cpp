@@ -100,7 +100,7 @@ constexpr std::string_view kRound = "round numbers in the converter, convert the
 constexpr std::string_view kReplaced =
     "they are replaced; look for shocks, bit errors, a loose connector; where they are many, "
     "survey "
-    "the well again";
+    "again";
 // Checks of samples and marks that by themselves name what is wrong.
 constexpr SampleWords kOfSamples[] = {
     {"accel_dead", "mend the sensor, survey the well again"},
