@@ -71,6 +71,47 @@ TEST(Places, AToolThatStartsAndStopsIsAcceleratedAsTheHoleBends) {
   }
 }
 
+/// Largest difference of the path's acceleration from v^2 I' across the hole, over the largest of
+/// v^2 I', in a hole whose inclination waves once in so many knots. Coriolis is taken out.
+double MissedOfAWave(double knots_a_wave) {
+  constexpr double kWave = 2e-3, kFast = 2;  // [rad], [m/s]
+  const double wave_number = kTwoPi / (knots_a_wave * kFast);
+  std::vector<RunKnot> knots(120);
+  std::vector<Node> nodes(knots.size() + 1);
+  const auto inclination = [&](double md) { return 0.6 + kWave * std::sin(wave_number * md); };
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    nodes[k].md = kFast * static_cast<double>(k);
+    nodes[k].speed = kFast;
+    const double at = inclination(nodes[k].md);
+    nodes[k].R_LT.col(2) = Eigen::Vector3d(std::sin(at), 0, std::cos(at));
+    if (k < knots.size()) knots[k].increment.seconds = 1;
+  }
+  std::vector<KnotPlace> places;
+  PlaceKnots(SiteAt(0.8, 0), nullptr, knots, nodes, places);
+  const double most = kFast * kFast * kWave * wave_number;
+  double missed = 0;
+  for (std::size_t k = 3; k + 3 < knots.size(); ++k) {
+    const double md = kFast * (static_cast<double>(k) + 0.5), at = inclination(md);
+    const Eigen::Vector3d tangent(std::sin(at), 0, std::cos(at));
+    const Eigen::Vector3d across(std::cos(at), 0, -std::sin(at));
+    const Eigen::Vector3d a =
+        places[k].acceleration_L - 2 * places[k].w_IL_L.cross(kFast * tangent);
+    missed = std::max(missed, std::abs(a.dot(across) - most * std::cos(wave_number * md)) / most);
+  }
+  return missed;
+}
+
+// Of the curvature in the middle of a knot of w of the wave, its chord has sinc(w / 2) and twicing
+// 1 - (1 - (1 + 2 cos w) / 3)^2 of that: 1.1 % are missed of a wave in 15 knots, 15 % in 6. A mean
+// of three knots alone would miss 6.5 and 36 %.
+TEST(Places, AHoleThatWavesAcceleratesAsItBends) {
+  for (const double knots : {15.0, 10.0, 6.0}) {
+    const double w = kTwoPi / knots, mean = (1 + 2 * std::cos(w)) / 3;
+    const double seen = std::sin(w / 2) / (w / 2) * (1 - (1 - mean) * (1 - mean));
+    EXPECT_NEAR(MissedOfAWave(knots), 1 - seen, 0.005) << knots;
+  }
+}
+
 // Along the arc t = (sin I, 0, cos I) the Earth's rate about the axis is W (cos(lat) sin I -
 // sin(lat) cos I) = -W sin(lat - I): what a tool that only slides seems to roll by. The latitude
 // goes with the way, by 1e-4 of what the inclination does.
