@@ -8,10 +8,11 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 
 Simulates tools whose errors are drawn from the job's own priors, and gravity from those of the
 Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
-the truth. Well `demo`: data/demo with other seeds, without faults; `slant+z`: by a tool with a
-third gyro axis; `slant@20`: rolling at 20 rpm; `vertical` and `top`: a hole that is, to its end or
-to 400 m. `found`: no survey is made, or its verdict is not
-"pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how many the
+the truth. Well `demo`: data/demo with other seeds, without faults; `vertical`, `top`, `kick`: a hole
+that is, to its end, to 400 m or to 200 m. `slant@20`: rolling at 20 rpm; `!2`: at 2 m/s;
+`~0.2_30`: in a hole whose angles wave by 0.2 deg in 30 m; `%0.5`: depth read to 0.5 m; `+z`: a
+third gyro axis; in this order. `found`: no survey is made, or its verdict is not "pass"; `fail`: of
+these, those with exit code 2 or 4. `named`: of those found, in how many the
 right cause is the first of diagnosis.csv; `in set`: or among those that together have 95 %, or
 alike the first. Of clean runs every check of chance is tabled by its share of chance, p, which is
 uniform where the check's sigma is true. `--power`: so many runs of each cause in POWER with the
@@ -75,6 +76,8 @@ WELLS = {
     "vertical": ("start_deg = 0.0\n", "start_deg = 40.0\n", 60.0, 1200.0, 0.0),
     "top": ("start_deg = 0.1\n[[well.inclination.term]]\nbegin_md_m = 400.0\nend_md_m = 900.0\n"
             "ramp_m = 50.0\nrate_deg_per_30m = 3.0\n", "start_deg = 40.0\n", 60.0, 1200.0, 1.0),
+    "kick": ("start_deg = 0.0\n[[well.inclination.term]]\nbegin_md_m = 200.0\nend_md_m = 600.0\n"
+             "ramp_m = 50.0\nrate_deg_per_30m = 3.4\n", "start_deg = 40.0\n", 60.0, 1200.0, 2.0),
 }
 OF_ALL = "slant,s,horizontal"
 
@@ -158,22 +161,27 @@ def Named(fault, causes):
     return right[0], inside
 
 
-def Hole(well):
-    """Of a well by a tool with a third gyro axis or another roll, `slant@20+z`, the hole."""
-    return well.removesuffix("+z").split("@")[0]
-
-
-def Rpm(well):
-    """Of the tool on its way in."""
-    _, _, of_another = well.removesuffix("+z").partition("@")
-    return float(of_another or WELLS[Hole(well)][-1])
+@functools.cache
+def Parts(well):
+    """Of a well's name: hole, rpm on the way in, speed [m/s], wave (amplitude [deg], period [m]) or
+    None, resolution of depth [m], whether there is a third axis."""
+    number = r"(\d+(?:\.\d+)?)"
+    name = re.fullmatch(rf"([a-z]+)(?:@{number})?(?:!{number})?(?:~{number}_{number})?(?:%{number})?"
+                        r"(\+z)?", well)
+    if not name or name[1] not in WELLS:
+        sys.exit(f"--wells: {well!r} is not HOLE[@RPM][!SPEED][~AMPLITUDE_PERIOD][%RESOLUTION][+z] "
+                 f"with HOLE of {', '.join(WELLS)}")
+    hole, rpm, speed, amplitude, period, resolution, third = name.groups()
+    return (hole, float(rpm or WELLS[hole][-1]), float(speed or 1.0),
+            (float(amplitude), float(period)) if amplitude else None, float(resolution or 0.01),
+            third is not None)
 
 
 def Steps(well):
     """In and out with stops of two minutes every 300 m on the way in; text, and its times."""
-    *_, end_m, _ = WELLS[Hole(well)]
-    rpm = Rpm(well)
-    speed, time, stops = 1.0, 0.0, []
+    hole, rpm, speed, *_ = Parts(well)
+    *_, end_m, _ = WELLS[hole]
+    time, stops = 0.0, []
     text = "start_md_m = 0.0\n"
     depth = 0.0
     for to in [*range(0, int(end_m) + 1, 300), *([int(end_m)] if end_m % 300 else [])]:
@@ -191,7 +199,7 @@ def Steps(well):
     return text, {"half": 0.45 * time, "half_and_minute": 0.45 * time + 60, "end": time,
                   "stop": middle[0] + 10, "stop_end": middle[1] - 10,
                   # On the way to the first stop within the bend, some 200 m of it.
-                  "slip": stops[2][0] - 250, "slip_end": stops[2][0] - 50}
+                  "slip": stops[2][0] - 250 / speed, "slip_end": stops[2][0] - 50 / speed}
 
 
 def Fault(well, fault, size):
@@ -222,14 +230,19 @@ def Files(well, seed, fault):
              f"gravity_gradient_anomaly_per_s2 = {place.gauss(0, GRAVITY_GRADIENT_PER_S2)!r}\n")
     if well == "demo":
         return Demonstration(seed, earth)
-    inclination, azimuth, latitude, end, _ = WELLS[Hole(well)]
+    hole, _, _, wave, resolution, has_gz = Parts(well)
+    inclination, azimuth, latitude, end, _ = WELLS[hole]
+    if wave:
+        term = "[[well.{}.term]]\namplitude_deg = {}\nperiod_m = {}\n"
+        inclination += term.format("inclination", *wave)
+        azimuth += term.format("azimuth", *wave)
     steps, _ = Steps(well)
-    third = "has_gz = true\n" if well.endswith("+z") else ""
+    third = "has_gz = true\n" if has_gz else ""
     simulation = (f'format = "wellgyro.simulation/1"\nseed = {seed}\n[well]\nname = "laws"\n'
                   f"end_md_m = {end + 5}\n[well.inclination]\n{inclination}[well.azimuth]\n"
                   f"{azimuth}[earth]\nlatitude_deg = {latitude}\n{earth}"
                   f"[run]\n{steps}[tool]\n{third}{TOOL}"
-                  f"depth_resolution_m = 0.01\n[streams]\nimu_hz = 10.0\n"
+                  f"depth_resolution_m = {resolution}\n[streams]\nimu_hz = 10.0\n"
                   f"depth_hz = 2.0\n{fault}")
     lines = TOOL.splitlines()
     job = (f'format = "wellgyro.job/1"\n[well]\nname = "{well}"\nlatitude_deg = {latitude}\n'
