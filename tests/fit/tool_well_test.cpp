@@ -30,6 +30,7 @@ constexpr double kRateCount = 1e-4, kForceCount = 1e-7;  // [deg/h], [g]
 // More than the least that the estimator takes, 5e-5: with less, runs find the errors that a bench
 // leaves better than they say, and what the bench says seems too much.
 constexpr double kForceNoise = 1e-4;  // [m/s^2/sqrt(Hz)]
+constexpr double kDepthStep = 0.01;   // [m], in which the estimator takes depths to be read
 
 struct BenchQuality {
   const char* name;
@@ -83,6 +84,7 @@ Simulation HoleRun(std::uint64_t seed) {
   simulation.tool.has_gz = true;
   simulation.tool.errors.gyro_noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
   simulation.tool.errors.accel_noise = kForceNoise;
+  simulation.tool.errors.depth_resolution = kDepthStep;
   return simulation;
 }
 
@@ -147,12 +149,15 @@ struct WellScore {
   int withheld = 0;  ///< runs that fail give no sigma
   int unlike = 0;    ///< perfect tools' runs that fail, as chance has them: nothing to compare with
   PartSquares bench;  ///< beyond the survey of a perfect tool, over what the calibration adds to it
-  PartSquares whole;  ///< off the truth, over what the survey says of itself
+  PartSquares whole;  ///< off where the tool was, over what the survey says of itself
 
-  void Take(const Survey& survey, const Survey& perfect, const TruthWell& well) {
+  void Take(const Survey& survey, const Survey& perfect, const Truth& truth) {
     const std::size_t n = std::min(survey.chosen.size(), perfect.chosen.size());
     tools += 1;
-    const Eigen::Vector3d start_W = well.PlaceAt(survey.chosen.front().md).p_WT_W;
+    const auto truth_at = [&](const Station& s) {
+      return truth.At(static_cast<double>(s.tool_time.ns) * 1e-9);
+    };
+    const Eigen::Vector3d start_W = truth_at(survey.chosen.front()).p_WT_W;
     for (std::size_t i = 1; i < n; ++i) {
       const Station &a = survey.chosen[i], &b = perfect.chosen[i];
       const auto square = [](const Eigen::Matrix3d& cov) -> Eigen::Matrix2d {
@@ -161,10 +166,11 @@ struct WellScore {
       bench.Add(i, n, a.inclination - b.inclination, std::remainder(a.azimuth - b.azimuth, kTwoPi),
                 a.cov_md_inc_azi - b.cov_md_inc_azi, (a.p_WT_W - b.p_WT_W).head<2>(),
                 square(a.cov_p_WT_W - b.cov_p_WT_W));
-      const auto point = well.PointAt(a.md);
-      whole.Add(i, n, a.inclination - point.inclination,
-                std::remainder(a.azimuth - point.azimuth, kTwoPi), a.cov_md_inc_azi,
-                (a.p_WT_W - (well.PlaceAt(a.md).p_WT_W - start_W)).head<2>(), square(a.cov_p_WT_W));
+      // The covariance counts what depths are misread by: not the hole's place at a misread depth.
+      const TruthState here = truth_at(a);
+      whole.Add(i, n, a.inclination - here.inclination,
+                std::remainder(a.azimuth - here.azimuth, kTwoPi), a.cov_md_inc_azi,
+                (a.p_WT_W - (here.p_WT_W - start_W)).head<2>(), square(a.cov_p_WT_W));
     }
   }
   void Print(const char* name) const {
@@ -210,7 +216,7 @@ void SurveyWith(const BenchQuality& quality, int tools, WellScore& score) {
       }
       continue;
     }
-    score.Take(survey, perfect, wellgyro::Truth(simulation).well());
+    score.Take(survey, perfect, wellgyro::Truth(simulation));
   }
 }
 
