@@ -227,6 +227,31 @@ TEST(StillDetector, SlidingInAStraightHoleIsVetoedByDepth) {
   for (const auto& w : Detect(tool, SetupFor(tool, 20), 300)) EXPECT_LT(w.seconds() * 0.003, 0.11);
 }
 
+// Marks at 2 Hz that scatter by 0.1 m: a DepthTrack errs by 0.06 m and by 0.12 m/s, and says so.
+TEST(StillDetector, DepthThatScattersDoesNotMoveAToolAtRest) {
+  Random random(7);
+  std::vector<AlongHole> scatter(301);
+  for (AlongHole& at : scatter) {
+    at = {.md = 0.06 * random.Normal(), .speed = 0.12 * random.Normal(), .sigma_speed = 0.12};
+  }
+  const auto depth = [&](double speed) {
+    return [&scatter, speed](double t) {
+      AlongHole along = scatter[static_cast<std::size_t>(t)];
+      along.md += 1000 + speed * t;
+      along.speed += speed;
+      along.known = true;
+      return along;
+    };
+  };
+  Tool tool;
+  tool.along = depth(0);
+  const auto windows = Detect(tool, SetupFor(tool), 300);
+  ASSERT_EQ(windows.size(), 1u);
+  EXPECT_GT(windows[0].seconds(), 290);
+  tool.along = depth(0.02);
+  EXPECT_TRUE(Detect(tool, SetupFor(tool), 300).empty()) << "1.2 m in a minute is seen through it";
+}
+
 TEST(StillDetector, CutsAndGapsEndTheWindow) {
   Tool tool;
   StillDetector detector(SetupFor(tool));

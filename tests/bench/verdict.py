@@ -10,10 +10,10 @@ Simulates tools whose errors are drawn from the job's own priors, and gravity fr
 Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
 the truth. Well `demo`: data/demo with other seeds, without faults; `vertical`, `top`, `kick`: a hole
 that is, to its end, to 400 m or to 200 m. `slant@20`: rolling at 20 rpm; `!2`: at 2 m/s;
-`~0.2_30`: in a hole whose angles wave by 0.2 deg in 30 m; `%0.5`: depth read to 0.5 m; `+z`: a
-third gyro axis; in this order. `found`: no survey is made, or its verdict is not "pass"; `fail`: of
-these, those with exit code 2 or 4. `named`: of those found, in how many the
-right cause is the first of diagnosis.csv; `in set`: or among those that together have 95 %, or
+`~0.2_30`: in a hole whose angles wave by 0.2 deg in 30 m; `%0.5`: depth read to 0.5 m; `^0.1`: with
+noise of 0.1 m; `+z`: a third gyro axis; in this order. `found`: no survey is made, or its verdict
+is not "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how many
+the right cause is the first of diagnosis.csv; `in set`: or among those that together have 95 %, or
 alike the first. Of clean runs every check of chance is tabled by its share of chance, p, which is
 uniform where the check's sigma is true. `--power`: so many runs of each cause in POWER with the
 smallest size that reliability.csv of a clean run has, four in five of which are to be noticed.
@@ -164,17 +164,17 @@ def Named(fault, causes):
 @functools.cache
 def Parts(well):
     """Of a well's name: hole, rpm on the way in, speed [m/s], wave (amplitude [deg], period [m]) or
-    None, resolution of depth [m], whether there is a third axis."""
+    None, resolution of depth and its noise [m], whether there is a third axis."""
     number = r"(\d+(?:\.\d+)?)"
     name = re.fullmatch(rf"([a-z]+)(?:@{number})?(?:!{number})?(?:~{number}_{number})?(?:%{number})?"
-                        r"(\+z)?", well)
+                        rf"(?:\^{number})?(\+z)?", well)
     if not name or name[1] not in WELLS:
-        sys.exit(f"--wells: {well!r} is not HOLE[@RPM][!SPEED][~AMPLITUDE_PERIOD][%RESOLUTION][+z] "
-                 f"with HOLE of {', '.join(WELLS)}")
-    hole, rpm, speed, amplitude, period, resolution, third = name.groups()
+        sys.exit(f"--wells: {well!r} is not HOLE[@RPM][!SPEED][~AMPLITUDE_PERIOD][%RESOLUTION]"
+                 f"[^NOISE][+z] with HOLE of {', '.join(WELLS)}")
+    hole, rpm, speed, amplitude, period, resolution, noise, third = name.groups()
     return (hole, float(rpm or WELLS[hole][-1]), float(speed or 1.0),
             (float(amplitude), float(period)) if amplitude else None, float(resolution or 0.01),
-            third is not None)
+            float(noise or 0), third is not None)
 
 
 def Steps(well):
@@ -230,7 +230,7 @@ def Files(well, seed, fault):
              f"gravity_gradient_anomaly_per_s2 = {place.gauss(0, GRAVITY_GRADIENT_PER_S2)!r}\n")
     if well == "demo":
         return Demonstration(seed, earth)
-    hole, _, _, wave, resolution, has_gz = Parts(well)
+    hole, _, _, wave, resolution, noise, has_gz = Parts(well)
     inclination, azimuth, latitude, end, _ = WELLS[hole]
     if wave:
         term = "[[well.{}.term]]\namplitude_deg = {}\nperiod_m = {}\n"
@@ -242,8 +242,8 @@ def Files(well, seed, fault):
                   f"end_md_m = {end + 5}\n[well.inclination]\n{inclination}[well.azimuth]\n"
                   f"{azimuth}[earth]\nlatitude_deg = {latitude}\n{earth}"
                   f"[run]\n{steps}[tool]\n{third}{TOOL}"
-                  f"depth_resolution_m = {resolution}\n[streams]\nimu_hz = 10.0\n"
-                  f"depth_hz = 2.0\n{fault}")
+                  f"depth_resolution_m = {resolution}\ndepth_noise_m = {noise}\n"
+                  f"[streams]\nimu_hz = 10.0\ndepth_hz = 2.0\n{fault}")
     lines = TOOL.splitlines()
     job = (f'format = "wellgyro.job/1"\n[well]\nname = "{well}"\nlatitude_deg = {latitude}\n'
            "[noise]\n" + "\n".join(lines[:NOISE_KEYS]) + "\n[errors]\n"

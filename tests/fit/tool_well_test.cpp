@@ -30,7 +30,6 @@ constexpr double kRateCount = 1e-4, kForceCount = 1e-7;  // [deg/h], [g]
 // More than the least that the estimator takes, 5e-5: with less, runs find the errors that a bench
 // leaves better than they say, and what the bench says seems too much.
 constexpr double kForceNoise = 1e-4;  // [m/s^2/sqrt(Hz)]
-constexpr double kDepthStep = 0.01;   // [m], in which the estimator takes depths to be read
 
 struct BenchQuality {
   const char* name;
@@ -84,7 +83,6 @@ Simulation HoleRun(std::uint64_t seed) {
   simulation.tool.has_gz = true;
   simulation.tool.errors.gyro_noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
   simulation.tool.errors.accel_noise = kForceNoise;
-  simulation.tool.errors.depth_resolution = kDepthStep;
   return simulation;
 }
 

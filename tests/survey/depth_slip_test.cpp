@@ -9,17 +9,20 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
+#include "wellgyro/math/square.h"
 
 namespace wellgyro {
 namespace {
 
 constexpr double kSigma = FromDegrees(0.01);
+constexpr double kSigmaOfAll = 0.3, kSigmaScale = 1e-3;  // of depths: common [m], of scale [1]
 
 /// A hole that is straight to 100 m, builds by `build` to 700 m, and is straight to its end.
 struct PassedTwice {
   double build = 3 * units::kDegPer30m;
   double size = 0, from = 0, to = 0;  ///< marks lose it on the way in, evenly [m]
   double offset = 0;                  ///< of the way out's depths [m]
+  double scatter = 0;                 ///< 1-sigma of each station's own depth [m]
   std::uint64_t seed = 1;
 
   double Inclination(double md) const {
@@ -39,7 +42,9 @@ struct PassedTwice {
       s.run = 1;
       s.pass = pass;
       s.md = read;
-      s.inclination = Inclination(md) + kSigma * random.Normal();
+      const double misread = scatter > 0 ? scatter * random.Normal() : 0;
+      s.inclination = Inclination(md + misread) + kSigma * random.Normal();
+      s.cov_md_inc_azi(0, 0) = Square(kSigmaOfAll) + Square(scatter) + Square(kSigmaScale * read);
       s.cov_md_inc_azi(1, 1) = kSigma * kSigma;
       s.tangent_L = {std::sin(s.inclination), 0, std::cos(s.inclination)};
     };
@@ -49,8 +54,8 @@ struct PassedTwice {
   }
   RunSlip Found() const {
     Job job;
-    job.errors.depth_sigma = 0.3;
-    return FindSlip(job, Stations(), 1);
+    job.errors.depth_sigma = kSigmaOfAll;
+    return FindSlip(job, kSigmaScale, Stations(), 1);
   }
 };
 
@@ -90,6 +95,20 @@ TEST(DepthSlip, PassesThatDoNotSlipShowNone) {
   EXPECT_GT(odds, 0.02) << "the test tells nothing";
 }
 
+// 0.2 m of depth are 0.02 deg of inclination in the bend, twice what it is read to.
+TEST(DepthSlip, DepthsThatScatterShowNoneAndHideNone) {
+  int alarms = 0, found = 0;
+  constexpr int kRuns = 100;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const PassedTwice clean{.scatter = 0.2, .seed = seed};
+    const PassedTwice slipped{.size = 2, .from = 440, .to = 460, .scatter = 0.2, .seed = seed};
+    alarms += CheckSlip(clean.Found(), 1).verdict == Verdict::kFail ? 1 : 0;
+    found += CheckSlip(slipped.Found(), 1).verdict == Verdict::kFail ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 1);
+  EXPECT_EQ(found, kRuns);
+}
+
 TEST(DepthSlip, TheSmallestIsNoticedFourTimesInFive) {
   const RunReliability told = PassedTwice{}.Found().reliability;
   ASSERT_TRUE(told.smallest && told.md);
@@ -111,7 +130,7 @@ TEST(DepthSlip, NothingTellsItWhereTheHoleIsStraightOrPassedOnce) {
   EXPECT_FALSE(straight.reliability.smallest);
   std::vector<Station> in = PassedTwice{.size = 2, .from = 440, .to = 460}.Stations();
   std::erase_if(in, [](const Station& s) { return s.pass == Pass::kOut; });
-  const RunSlip once = FindSlip(Job{}, in, 1);
+  const RunSlip once = FindSlip(Job{}, 0, in, 1);
   EXPECT_EQ(CheckSlip(once, 1).verdict, Verdict::kNotDone);
   EXPECT_FALSE(once.reliability.smallest);
   EXPECT_GT(once.reliability.shift_W.norm(), 5) << "what may be there unseen";

@@ -27,7 +27,9 @@ struct StillSetup {
   /// 0.011 m/s in a DepthTrack, whose speed such rounding leaves with 1-sigma .0052 m/s at 2 Hz and
   /// .0017 at 10 Hz. A speed just below it passes travel_limit in 17 s.
   double speed_limit = 0.006;
-  double travel_limit = 0.1;  ///< along-hole way within one window [m]
+  /// Along-hole way within one window [m]; where four sigmas of two depths' difference are more,
+  /// they count: marks that scatter by 0.1 m read as up to 0.4 m of way in a DepthTrack at 2 Hz.
+  double travel_limit = 0.1;
 };
 
 /// Finds the stretches at rest in a stream of samples, causally and in constant memory.
@@ -110,6 +112,7 @@ class WELLGYRO_EXPORT StillDetector {
   bool InBlock(ToolTime time) const;
   std::optional<StillWindow> EndBlock(const SampleStamp& next);
   double SpeedLimit(double sigma_speed) const;
+  double TravelLimit(double sigma_speed) const;
   void Add(const ImuSample& sample, const AlongHole& along);
   std::optional<StillWindow> CloseBlock();
   bool StillAlone(const Means& block) const;

@@ -226,14 +226,14 @@ void Choose(const Site& head, const Station& opening, const std::vector<PassLine
 
 /// What an error e of the depth's scale does to stations below the tie-in at `origin`. The path to
 /// where the tool was grows by e (p - origin), and the hole at that depth lies e (md - md_tie) up
-/// from there; both as in ByCommonDepth(). What is found of e and not corrected counts as an error.
+/// from there; both as in ByCommonDepth().
 void AddDepthScale(const Job& job, const std::vector<DraftedRun>& runs,
                    const Eigen::Vector3d& origin, std::vector<Station>& stations) {
   for (Station& s : stations) {
     const auto run =
         std::find_if(runs.begin(), runs.end(), [&](const DraftedRun& r) { return r.run == s.run; });
     const double scale =
-        std::max(job.errors.depth_scale_sigma, run == runs.end() ? 0 : run->depth_scale_found);
+        run == runs.end() ? job.errors.depth_scale_sigma : run->SigmaOfDepthScale(job.errors);
     const double way = s.md - job.tie_in.md;
     if (s.kind == StationKind::kTieIn || !(way > 0) || !(scale > 0)) continue;
     const Eigen::Vector3d along = scale * way * Tangent(s.inclination, s.azimuth);

@@ -52,7 +52,15 @@ double SlopeOfWayIn(const std::vector<const Station*>& in, std::size_t i) {
   return way > 0 ? (below.inclination - above.inclination) / way : 0;
 }
 
-std::vector<SlipPair> SlipPairsOf(std::span<const Station> passes, std::int32_t run) {
+/// Of a station's own depth error, beyond those that both passes have in common.
+double OwnDepthVariance(const Job& job, double sigma_scale, const Station& s) {
+  const double by_scale = sigma_scale * std::max(s.md - job.tie_in.md, 0.0);
+  const double common = Square(job.errors.depth_sigma) + Square(by_scale);
+  return std::max(s.cov_md_inc_azi(0, 0) - common, 0.0);
+}
+
+std::vector<SlipPair> SlipPairsOf(const Job& job, double sigma_scale,
+                                  std::span<const Station> passes, std::int32_t run) {
   const std::vector<const Station*> in = StationsOfPass(passes, run, Pass::kIn),
                                     out = StationsOfPass(passes, run, Pass::kOut);
   std::vector<SlipPair> pairs;
@@ -60,9 +68,13 @@ std::vector<SlipPair> SlipPairsOf(std::span<const Station> passes, std::int32_t 
     const Station& a = *in[i];
     const auto b = std::ranges::lower_bound(out, a.md - kSameDepth, {}, &Station::md);
     if (b == out.end() || (*b)->md > a.md + kSameDepth) continue;
-    const double variance = a.cov_md_inc_azi(1, 1) + (*b)->cov_md_inc_azi(1, 1);
+    const double slope = SlopeOfWayIn(in, i);
+    double variance = 0;
+    for (const Station* s : {&a, *b}) {
+      variance += s->cov_md_inc_azi(1, 1) + Square(slope) * OwnDepthVariance(job, sigma_scale, *s);
+    }
     if (!(variance > 0)) continue;
-    pairs.push_back({a.md, (*b)->inclination - a.inclination, variance, SlopeOfWayIn(in, i)});
+    pairs.push_back({a.md, (*b)->inclination - a.inclination, variance, slope});
   }
   return pairs;
 }
@@ -158,7 +170,8 @@ SlipScan SlipScanOf(const std::vector<SlipPair>& pairs, double sigma_offset) {
 
 }  // namespace
 
-RunSlip FindSlip(const Job& job, std::span<const Station> passes, std::int32_t run) {
+RunSlip FindSlip(const Job& job, double sigma_scale, std::span<const Station> passes,
+                 std::int32_t run) {
   RunSlip slip;
   RunCause& cause = slip.cause;
   cause.code = slip.reliability.code = "depth_slip";
@@ -167,7 +180,7 @@ RunSlip FindSlip(const Job& job, std::span<const Station> passes, std::int32_t r
   const Station* end = DeepestOfRun(passes, run);
   if (end == nullptr) return slip;
   slip.reliability.shift_W = -kLargestFault * kSlipSize * end->tangent_L;
-  const std::vector<SlipPair> pairs = SlipPairsOf(passes, run);
+  const std::vector<SlipPair> pairs = SlipPairsOf(job, sigma_scale, passes, run);
   const bool bends =
       std::ranges::any_of(pairs, [](const SlipPair& p) { return std::abs(p.slope) > kStraight; });
   if (std::ssize(pairs) < kLeastPairs || !bends) return slip;

@@ -17,14 +17,16 @@ namespace wellgyro {
 /// depth, and not below it, whether it slipped there on the way in or out.
 ///
 /// Differences d = s g [md < t] + o g + c + e, g = dI/ds, with the offset o of the passes' depths
-/// as the job's depth_sigma allows it, twice, and a common error c of the inclinations as large as
-/// one of e. Size and onset are integrated out as in Diagnose(); `begin_md` is t at its likeliest,
-/// a slow slip's middle, `size` [m] is positive where marks came out too small. `shift_W`: of a
-/// slip on the way in; one on the way out moves no station of it. Without two passes, or in a hole
-/// that does not bend, nothing tells it: `ln_bayes` is absent.
+/// as the job's depth_sigma allows it, twice, a common error c of the inclinations as large as one
+/// of e, and in e what a station's own depth is unsure by: its variance less those of depth_sigma
+/// and of `sigma_scale`, times g^2. Size and onset are integrated out as in Diagnose(); `begin_md`
+/// is t at its likeliest, a slow slip's middle, `size` [m] is positive where marks came out too
+/// small. `shift_W`: of a slip on the way in; one on the way out moves no station of it. Without
+/// two passes, or in a hole that does not bend, nothing tells it: `ln_bayes` is absent.
 ///
 /// `reliability`: the smallest that would be noticed four times in five at half of the depths.
-WELLGYRO_EXPORT RunSlip FindSlip(const Job& job, std::span<const Station> passes, std::int32_t run);
+WELLGYRO_EXPORT RunSlip FindSlip(const Job& job, double sigma_scale,
+                                 std::span<const Station> passes, std::int32_t run);
 
 /// The check `depth_slip`: fails where a slip is noticed.
 Check CheckSlip(const RunSlip& slip, std::int32_t run);

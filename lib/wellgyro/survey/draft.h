@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "wellgyro/attitude/station_state.h"
 #include "wellgyro/record/attitude_sample.h"
+#include "wellgyro/record/noise.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/survey/way.h"
 
@@ -40,6 +42,11 @@ struct DraftedRun {
   /// Root of the second moment of the depth scale's error, as the accelerometers tell it; 0: they
   /// do not.
   double depth_scale_found = 0;
+
+  /// Of the depth scale as the survey counts it: what is found and not corrected is an error.
+  double SigmaOfDepthScale(const ErrorPriors& errors) const {
+    return std::max(errors.depth_scale_sigma, depth_scale_found);
+  }
 };
 
 }  // namespace wellgyro

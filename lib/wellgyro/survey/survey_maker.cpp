@@ -309,8 +309,10 @@ Survey SurveyMaker::Make() const {
   survey.marks_refused = string_.refused.all();
   const std::vector<DraftedRun> drafted = Drafted();
   Placed placed = Assemble(job_, drafted);
-  for (RunSummary& run : survey.runs) {
-    run.slip = std::make_shared<const RunSlip>(FindSlip(job_, placed.passes, run.run));
+  for (std::size_t i = 0; i < survey.runs.size(); ++i) {
+    RunSummary& run = survey.runs[i];
+    const double sigma_scale = drafted[i].SigmaOfDepthScale(job_.errors);
+    run.slip = std::make_shared<const RunSlip>(FindSlip(job_, sigma_scale, placed.passes, run.run));
   }
   survey.checks = Checks(survey.runs, placed.passes);
   survey.checks.push_back(CheckAzimuths(drafted));
