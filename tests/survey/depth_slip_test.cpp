@@ -95,17 +95,17 @@ TEST(DepthSlip, PassesThatDoNotSlipShowNone) {
   EXPECT_GT(odds, 0.02) << "the test tells nothing";
 }
 
-// 0.2 m of depth are 0.02 deg of inclination in the bend, twice what it is read to.
+// In the bend a decimetre of depth is a hundredth of a degree, what inclination is read to.
 TEST(DepthSlip, DepthsThatScatterShowNoneAndHideNone) {
   int alarms = 0, found = 0;
-  constexpr int kRuns = 100;
+  constexpr int kRuns = 400;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    const PassedTwice clean{.scatter = 0.2, .seed = seed};
+    const PassedTwice clean{.scatter = 0.5, .seed = seed};
     const PassedTwice slipped{.size = 2, .from = 440, .to = 460, .scatter = 0.2, .seed = seed};
     alarms += CheckSlip(clean.Found(), 1).verdict == Verdict::kFail ? 1 : 0;
     found += CheckSlip(slipped.Found(), 1).verdict == Verdict::kFail ? 1 : 0;
   }
-  EXPECT_LE(alarms, 1);
+  EXPECT_LE(alarms, 2);
   EXPECT_EQ(found, kRuns);
 }
 
