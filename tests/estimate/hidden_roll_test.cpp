@@ -235,6 +235,30 @@ TEST(HiddenRoll, LongStretchesAreSolvedInPieces) {
 }
 
 // A job may say that a tool has no such error.
+// A roll of 0.1 rad/s that swings by 0.16 rad/s besides: what windows and neighbours tell is the
+// rate in the middle of the swing, a tool's fixed errors aside.
+TEST(HiddenRoll, OtherStartsHaveTheMiddleOfASwing) {
+  const EstimateSetup setup = SetupOf();
+  constexpr double kRate = 0.1;
+  std::vector<RunKnot> knots = KnotsOf({.rate = kRate, .swing = 0.3, .period = 12}, 400, setup, 3);
+  for (RunKnot& knot : knots) {
+    knot.increment.turn_M -= Eigen::Vector2d(kEarthRate, -0.5 * kEarthRate);
+  }
+  const std::vector<std::vector<double>> rolls = HiddenRolls(knots, setup);
+  ASSERT_EQ(rolls.size(), 3u);
+  for (const std::size_t start : {1u, 2u}) {
+    ASSERT_EQ(rolls[start].size(), knots.size());
+    double mean = 0, squares = 0;
+    for (const double rate : rolls[start]) mean += rate / 400;
+    for (const double rate : rolls[start]) squares += Square(rate - kRate) / 400;
+    EXPECT_NEAR(mean, kRate, 0.2 * kRate) << start;
+    EXPECT_LT(std::sqrt(squares), 0.03) << start << ", a swing has 0.11";
+  }
+  // Where gravity shows every roll there is but one way to begin.
+  for (RunKnot& knot : knots) knot.increment.roll_seen = true;
+  EXPECT_EQ(HiddenRolls(knots, setup).size(), 1u);
+}
+
 TEST(HiddenRoll, StatedErrorsMayBeNone) {
   EstimateSetup setup = SetupOf();
   Random random(9);

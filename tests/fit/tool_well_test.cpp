@@ -76,6 +76,7 @@ Simulation HoleRun(std::uint64_t seed) {
   hour.swing_deg = 30;
   hour.minutes = 20;
   hour.stops = 2;
+  hour.speed = 0.5837;  // no whole number of the depth's steps between two marks
   Simulation simulation = SimulationOf(hour, 0);
   simulation.seed = seed;
   // Accelerometers that are known worse than the Earth's gravity take their errors for its.
@@ -83,6 +84,7 @@ Simulation HoleRun(std::uint64_t seed) {
   simulation.tool.has_gz = true;
   simulation.tool.errors.gyro_noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
   simulation.tool.errors.accel_noise = kForceNoise;
+  simulation.tool.errors.depth_resolution = hour.depth_resolution;
   return simulation;
 }
 
