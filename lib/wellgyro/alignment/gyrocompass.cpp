@@ -12,6 +12,7 @@
 #include "wellgyro/alignment/gyrocompass_internal.h"
 #include "wellgyro/alignment/magnetic.h"
 #include "wellgyro/base/angle.h"
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/record/decides.h"
 #include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -252,8 +253,8 @@ NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,
 
   const Matrix3d R_LT = best.state.R_LT_at(windows.size() - 1);
   const Vector3d t = R_LT.col(2);
-  fix.inclination = std::atan2(std::hypot(t.x(), t.y()), t.z());
-  fix.azimuth = WrapTwoPi(std::atan2(t.y(), t.x()));
+  fix.inclination = InclinationOf(t);
+  fix.azimuth = AzimuthOf(t);
   fix.toolface = std::atan2(R_LT(2, 1), -R_LT(2, 0));
   bool vertical = false;
   fix.cov_attitude = EulerCovariance(best, windows.size(), vertical);

@@ -7,7 +7,6 @@
 
 #include "wellgyro/bus/batch_internal.h"
 #include "wellgyro/bus/said_fields_internal.h"
-#include "wellgyro/math/rotation.h"
 
 namespace wellgyro {
 namespace {
@@ -48,10 +47,7 @@ Result<Message> SurveyStation(std::span<const std::byte> bytes) {
   sent.station.quality = static_cast<Quality>(quality);
   MirrorUpper(sent.station.cov_md_inc_azi);
   MirrorUpper(sent.station.cov_p_WT_W);
-  Station& s = sent.station;
-  const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(s.inclination, s.azimuth);
-  s.tangent_L = Tangent(s.inclination, s.azimuth);
-  s.cov_tangent_L = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
+  DeriveTangent(sent.station);
   return Message(std::move(sent));
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "wellgyro/base/angle.h"
+
 namespace wellgyro {
 
 Eigen::Matrix3d RotationX(double angle) {
@@ -26,6 +28,14 @@ Eigen::Matrix3d AttitudeMatrix(double azimuth, double inclination, double toolfa
 Eigen::Vector3d Tangent(double inclination, double azimuth) {
   const double s = std::sin(inclination);
   return {s * std::cos(azimuth), s * std::sin(azimuth), std::cos(inclination)};
+}
+
+double InclinationOf(const Eigen::Vector3d& axis_L) {
+  return std::atan2(std::hypot(axis_L.x(), axis_L.y()), axis_L.z());
+}
+
+double AzimuthOf(const Eigen::Vector3d& axis_L) {
+  return WrapTwoPi(std::atan2(axis_L.y(), axis_L.x()));
 }
 
 Eigen::Matrix<double, 3, 2> TangentByAngles(double inclination, double azimuth) {

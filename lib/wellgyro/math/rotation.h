@@ -17,7 +17,13 @@ WELLGYRO_EXPORT Eigen::Matrix3d AttitudeMatrix(double azimuth, double inclinatio
 /// Unit tangent of the hole in L: (sin I cos A, sin I sin A, cos I).
 WELLGYRO_EXPORT Eigen::Vector3d Tangent(double inclination, double azimuth);
 
-/// Its derivative by (inclination, azimuth): the high side and, sin I times as long, the right.
+/// Inclination, atan2 regular at vertical, and azimuth in [0, 2 pi), 0 at vertical, of a vector
+/// along the hole, of any length [rad].
+WELLGYRO_EXPORT double InclinationOf(const Eigen::Vector3d& axis_L);
+WELLGYRO_EXPORT double AzimuthOf(const Eigen::Vector3d& axis_L);
+
+/// Derivative of Tangent() by (inclination, azimuth): the high side and, sin I times as long, the
+/// right.
 WELLGYRO_EXPORT Eigen::Matrix<double, 3, 2> TangentByAngles(double inclination, double azimuth);
 
 }  // namespace wellgyro

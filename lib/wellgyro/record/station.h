@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/base/export.h"
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/quality.h"
 
@@ -45,7 +46,7 @@ struct Station {
   /// at every inclination. Of an unfit station, whose direction is not known, that of an unknown
   /// angle in all directions: rank three.
   Eigen::Matrix3d cov_tangent_L = Eigen::Matrix3d::Zero();
-  double inclination = 0;  ///< I of the tangent [rad]
+  double inclination = 0;  ///< I of the tangent [rad]; this, A and their covariance: DeriveAngles()
   double azimuth = 0;      ///< A, true [rad], [0, 2 pi); that of the tool where I is 0
   double toolface = 0;     ///< of the tool, high side to reference mark [rad]
   /// Of (md, inclination, azimuth) [m, rad]: as written, at the edge. Near vertical an azimuth has
@@ -62,5 +63,15 @@ struct Station {
   std::int64_t imu_seq_end = 0;                          ///< exclusive
   std::int64_t samples_lost = 0;                         ///< in that range
 };
+
+/// The edge at which a direction becomes angles: inclination, azimuth and their covariance of the
+/// tangent and of its C, by e_I = dt/dI and e_A = dt/dA / sin I,
+///   var I = e_I' C e_I,  var A = e_A' C e_A / sin^2 I,
+/// to first order. An azimuth's variance is never more than pi^2/3, that of no knowledge at all,
+/// and then goes with nothing. Vertical has no azimuth: there it is `azimuth_at_vertical` [rad].
+WELLGYRO_EXPORT void DeriveAngles(double azimuth_at_vertical, Station& station);
+
+/// The reverse, for a station that comes as angles: a message's or a listing's.
+WELLGYRO_EXPORT void DeriveTangent(Station& station);
 
 }  // namespace wellgyro

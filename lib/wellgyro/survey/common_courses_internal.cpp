@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/well_line.h"
 #include "wellgyro/trajectory/trajectory.h"
@@ -46,8 +45,7 @@ CommonCourses::CommonCourses(const SurveyedWell& well, std::span<const double> c
       continue;
     }
     const Vector3d& t = own[k].smooth_W;
-    stations.push_back({common[k], std::atan2(std::hypot(t.x(), t.y()), t.z()),
-                        WrapTwoPi(std::atan2(t.y(), t.x())), 0});
+    stations.push_back({common[k], InclinationOf(t), AzimuthOf(t), 0});
   }
   well_ = SurveyWell(std::move(stations), well.position_W.front());
   for (const SurveyPoint& p : well_.survey) tangent_W_.push_back(Tangent(p.inclination, p.azimuth));

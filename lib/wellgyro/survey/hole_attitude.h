@@ -8,26 +8,16 @@
 
 namespace wellgyro {
 
-/// Where the hole points, with the covariance of (inclination, azimuth) [rad^2].
-struct HoleAttitude {
-  Eigen::Vector3d tangent_L = Eigen::Vector3d::UnitZ();
-  double inclination = 0;  ///< [rad]
-  double azimuth = 0;      ///< true [rad], [0, 2 pi)
-  Eigen::Matrix2d cov = Eigen::Matrix2d::Zero();
-};
-
-/// From the tool's attitude to the hole's: the tool is not the hole.
+/// Unit tangent of the hole by the tool's attitude: the tool is not the hole.
 ///
 /// R_TH of the string stands between: the tool axis leans by (misalignment_x, misalignment_y) in
 /// its own axes, and hangs below the hole axis by sag sin I. Both are corrected exactly on the
-/// direction vector, their sigmas added to first order: sigma_sag sin I to the inclination,
-/// sigma_misalignment to it and, over sin I, to the azimuth. The azimuth variance never exceeds
-/// pi^2/3, that of no knowledge at all.
-WELLGYRO_EXPORT HoleAttitude AttitudeOfHole(const AttitudeSample& tool, const StringSpec& string);
+/// direction vector.
+WELLGYRO_EXPORT Eigen::Vector3d TangentOfHole(const AttitudeSample& tool, const StringSpec& string);
 
-/// Covariance of the hole's unit tangent [rad^2], of that of the tool's axis. Regular at every
-/// inclination: the string's errors are of directions too.
-WELLGYRO_EXPORT Eigen::Matrix3d CovarianceOfTangent(const HoleAttitude& hole,
+/// Its covariance [rad^2], of that of the tool's axis: to first order sigma_misalignment across in
+/// every direction, and sigma_sag sin I towards the high side. Regular at every inclination.
+WELLGYRO_EXPORT Eigen::Matrix3d CovarianceOfTangent(const Eigen::Vector3d& tangent_L,
                                                     const Eigen::Matrix3d& cov_axis_L,
                                                     const StringSpec& string);
 

@@ -42,8 +42,8 @@ void ForgetAngle(int i, AttitudeSample& a) {
 AttitudeSample AttitudeOf(const RunKnot& knot, const Matrix3d& R, const Matrix3d& cov_phi_T) {
   AttitudeSample a;
   a.time = knot.increment.time;
-  a.inclination = std::atan2(std::hypot(R(0, 2), R(1, 2)), R(2, 2));
-  a.azimuth = WrapTwoPi(std::atan2(R(1, 2), R(0, 2)));
+  a.inclination = InclinationOf(R.col(2));
+  a.azimuth = AzimuthOf(R.col(2));
   a.toolface = std::atan2(R(2, 1), -R(2, 0));
   a.azimuth_known = true;
   a.quality = Without(knot.increment.quality, Quality::kVertical);

@@ -10,7 +10,6 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/base/angle.h"
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/listing_errors_internal.h"
 #include "wellgyro/survey/same_depth_internal.h"
@@ -65,8 +64,8 @@ SurveyedWell MeanHole(const SurveyedWell& well, std::span<const RepeatedSurvey> 
   SurveyedWell mean = well;
   for (std::size_t k = 0; k < sum.size(); ++k) {
     const Vector3d& t = sum[k];
-    mean.survey[k].inclination = std::atan2(std::hypot(t.x(), t.y()), t.z());
-    mean.survey[k].azimuth = WrapTwoPi(std::atan2(t.y(), t.x()));
+    mean.survey[k].inclination = InclinationOf(t);
+    mean.survey[k].azimuth = AzimuthOf(t);
   }
   return mean;
 }

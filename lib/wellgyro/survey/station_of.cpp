@@ -22,15 +22,12 @@ Eigen::Matrix3d CovarianceOfAxis(const AttitudeSample& tool, const StationState*
 
 Station StationOf(const Job& job, const Draft& draft, const StationState* state) {
   const AttitudeSample& tool = state ? state->attitude : draft.attitude;
-  const HoleAttitude hole = AttitudeOfHole(tool, job.string);
   Station s = draft.station;
-  s.tangent_L = hole.tangent_L;
-  s.inclination = hole.inclination;
-  s.azimuth = hole.azimuth;
   s.toolface = tool.toolface;
   s.quality |= tool.quality;
-  s.cov_md_inc_azi.bottomRightCorner<2, 2>() = hole.cov;
-  s.cov_tangent_L = CovarianceOfTangent(hole, CovarianceOfAxis(tool, state), job.string);
+  s.tangent_L = TangentOfHole(tool, job.string);
+  s.cov_tangent_L = CovarianceOfTangent(s.tangent_L, CovarianceOfAxis(tool, state), job.string);
+  DeriveAngles(tool.azimuth, s);
   double sigma_md = job.errors.depth_sigma;
   if (state) sigma_md = std::max(sigma_md, state->along.sigma_md);
   s.cov_md_inc_azi(0, 0) = sigma_md * sigma_md;

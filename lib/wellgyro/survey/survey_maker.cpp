@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/math/square.h"
 #include "wellgyro/record/run_fit.h"
 #include "wellgyro/survey/assemble.h"
@@ -144,8 +145,8 @@ std::vector<Waypoint> SurveyMaker::WayOf(const ToolRun& run) const {
     if (!knot.along.known || !HasDirection(attitude)) continue;
     // A UTC that has stepped back passes the same times again.
     if (!way.empty() && knot.utc < way.back().utc) continue;
-    const HoleAttitude hole = AttitudeOfHole(attitude, job_.string);
-    way.push_back({knot.utc, {knot.along.md, hole.inclination, hole.azimuth}});
+    const Eigen::Vector3d tangent_L = TangentOfHole(attitude, job_.string);
+    way.push_back({knot.utc, {knot.along.md, InclinationOf(tangent_L), AzimuthOf(tangent_L)}});
   }
   return way;
 }

@@ -17,7 +17,6 @@
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
-#include "wellgyro/math/rotation.h"
 #include "wellgyro/survey/verdict.h"
 
 namespace wellgyro {
@@ -181,9 +180,7 @@ class Reader {
     s.cov_p_WT_W << v[8], v[9], v[10], v[9], v[11], v[12], v[10], v[12], v[13];
     s.cov_md_inc_azi(1, 1) = std::pow(FromDegrees(v[14]), 2);
     s.cov_md_inc_azi(2, 2) = std::pow(FromDegrees(v[15]), 2);
-    const Eigen::Matrix<double, 3, 2> slope = TangentByAngles(s.inclination, s.azimuth);
-    s.tangent_L = Tangent(s.inclination, s.azimuth);
-    s.cov_tangent_L = slope * s.cov_md_inc_azi.bottomRightCorner<2, 2>() * slope.transpose();
+    DeriveTangent(s);
     return s;
   }
 
