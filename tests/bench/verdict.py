@@ -8,8 +8,8 @@ runs whose end lies beyond its 95 % region without exit code 4 (hazardously misl
 
 Simulates tools whose errors are drawn from the job's own priors, and gravity from those of the
 Earth model, with and without one [[fault]], surveys the log and compares the deepest station with
-the truth. Well `demo`: data/demo with other seeds, without faults; `vertical`, `top`, `kick`: a hole
-that is, to its end, to 400 m or to 200 m. `slant@20`: rolling at 20 rpm; `!2`: at 2 m/s;
+the truth. Well `demo`: data/demo with other seeds, without faults; `vertical`, `top`, `kick`: a
+hole that is, to its end, to 400 m or to 200 m. `slant@20`: rolling at 20 rpm; `!2`: at 2 m/s;
 `~0.2_30`: in a hole whose angles wave by 0.2 deg in 30 m; `%0.5`: depth read to 0.5 m; `^0.1`: with
 noise of 0.1 m; `+z`: a third gyro axis; in this order. `found`: no survey is made, or its verdict
 is not "pass"; `fail`: of these, those with exit code 2 or 4. `named`: of those found, in how many

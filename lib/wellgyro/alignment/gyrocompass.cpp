@@ -238,8 +238,7 @@ NorthFix Gyrocompass(std::span<const StillWindow> windows, const Site& site,
     return other.cost - best.cost < kDecides && (away < basin.low || away > basin.high);
   });
   if (rival != minima.end()) {
-    const Vector3d mirror = rival->state.R_LT.col(2);
-    fix.mirror_azimuth = WrapTwoPi(std::atan2(mirror.y(), mirror.x()));
+    fix.mirror_azimuth = AzimuthOf(rival->state.R_LT.col(2));
     fix.mirror_cost = rival->cost - best.cost;
     fix.quality |= Quality::kMirror;
   }
