@@ -7,6 +7,7 @@
 #include "wellgyro/earth/earth_rate.h"
 #include "wellgyro/math/drift.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/math/so3.h"
 #include "wellgyro/record/force_errors.h"
 #include "wellgyro/record/unknown_angle.h"
@@ -314,8 +315,7 @@ std::pair<double, double> Problem::RateRatio(const State& state) const {
 }
 
 double HeadingFrom(const State& b, const State& a) {
-  const Matrix3d turn = a.R_LT * b.R_LT.transpose();
-  return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
+  return AngleAboutZ(a.R_LT * b.R_LT.transpose());
 }
 
 }  // namespace wellgyro::gyrocompass

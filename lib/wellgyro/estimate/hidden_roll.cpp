@@ -1,74 +1,50 @@
 #include "wellgyro/estimate/hidden_roll.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <cstdint>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/earth/earth.h"
+#include "wellgyro/estimate/knot_terms.h"
+#include "wellgyro/estimate/places.h"
+#include "wellgyro/estimate/roll_path.h"
 #include "wellgyro/estimate/roll_start.h"
 #include "wellgyro/estimate/roll_window.h"
 #include "wellgyro/math/median.h"
+#include "wellgyro/math/rotation.h"
 #include "wellgyro/math/square.h"
 
 namespace wellgyro {
 namespace {
 
 using Complex = std::complex<double>;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
 
-// The grid: headings 2.8 deg apart, and rates up to 21 rpm by which a knot of a second passes whole
-// steps of heading. With steps twice as large two of seven runs at 6 rpm end in another solution.
-constexpr std::size_t kSteps = 128, kSpins = 91;
-constexpr int kAtRest = kSpins / 2;
-constexpr double kHeadingStep = kTwoPi / kSteps;  // [rad], [rad/s]
-// 1-sigma of what the grid's model leaves out, over the horizontal Earth rate: headings between two
-// steps, and bends of a few deg/h. Halved, seven runs come to the same solutions, doubled six.
+// 1-sigma of what the model of HiddenRoll() leaves out, over the horizontal Earth rate: headings
+// between two steps of the grid, and bends of a few deg/h. Halved, seven runs come to the same
+// solutions, doubled six.
 constexpr double kLoose = 0.15;
-// -ln of the likelihood of an outlier, 3^2 / 2: a reading off by more than three sigmas costs no
-// more.
-constexpr double kStranger = 4.5;
-// Scale b of the Laplace prior exp(-|x| / b) of the rate's change x from knot to knot [rad/s]:
-// where the tool starts or stops, and elsewhere, so that the path does not turn with a bend.
-// Halved, or the first doubled, seven runs come to the same solutions; with twice the second one of
-// them does not.
-constexpr double kChangeStarting = 0.1, kChange = 0.02;
-// The same of a knot's rate about its window's, which knows a bend by the forces [rad/s]. A window
-// that a start crosses may be wrong: the cost of a knot ends at 1. Without this prior five of seven
-// runs of wells that kick off end in another solution; at four times this three, at twice it none.
-constexpr double kOffWindow = 0.2;
-// Knots that are decided at once, and those behind them that are looked at before: a minute later
-// the best paths have joined. It bounds the memory to 660 kSteps kSpins bytes, 8 MB.
-constexpr std::size_t kPiece = 600, kAgain = 60;
+// Its scales of the rate's change from knot to knot [rad/s]: elsewhere, so that the path does not
+// turn with a bend, and where the tool starts or stops. Halved, or the second doubled, seven runs
+// come to the same solutions; with twice the first one of them does not.
+constexpr double kChange = 0.02, kChangeStarting = 0.1;
+// The same of RollAbout(), whose bends are known: uniform within a step of 2.8 deg a heading has a
+// sigma of 0.014, and a bend of 1 deg/30 m at 1 m/s that is known to 1 % is off by as much.
+constexpr double kLooseAbout = 0.04;
+// A swing by 20 deg in 10 s changes its rate by up to 0.14 rad/s in a second.
+constexpr double kChangeAbout = 0.2, kChangeStartingAbout = 0.5;
 constexpr std::size_t kLeast = 10;  // knots, as a window has
 // Neighbours of a knot, a minute to either side, and of them that tell: the median of five is right
 // with two wrong. What is below 0.3 of the Earth's horizontal rate has no direction beside the
 // gyros' bias.
 constexpr std::size_t kMinute = 60, kTelling = 5;
 constexpr double kEarthsLeast = 0.3;
-constexpr float kBarred = 1e9F;  // cost of what is not, as a tool at rest that turns
-
-/// A value for every rate (rows) and heading at the begin of a knot (columns).
-template <typename T>
-using Grid = std::array<std::array<T, kSteps>, kSpins>;
-
-double SpinRate(std::size_t spin) { return (static_cast<int>(spin) - kAtRest) * kHeadingStep; }
-
-/// Steps of heading in a knot.
-long StepsIn(std::size_t spin, double seconds) {
-  return std::lround(SpinRate(spin) * seconds / kHeadingStep);
-}
-
-/// `steps` modulo `circle`, not negative.
-std::size_t Around(long steps, std::size_t circle) {
-  const auto turn = static_cast<long>(circle);
-  return static_cast<std::size_t>((steps % turn + turn) % turn);
-}
 
 /// Error of the gyros across, fixed in the tool: `bias` + roll rate * `skew`.
 struct Fixed {
@@ -117,180 +93,39 @@ std::vector<RollWindow> WindowsOf(std::span<const RunKnot> knots, const Estimate
   return windows;
 }
 
-/// A stretch of knots in a row whose heading gravity does not show, rests among them.
-class Stretch {
- public:
-  /// `first`: of the run, whose `windows` these are. `starts`: SpeedStarts() of these knots.
-  /// Everything must outlive this object.
-  Stretch(std::span<const RunKnot> knots, std::size_t first, const EstimateSetup& setup,
-          std::span<const double> starts, std::span<const RollWindow> windows)
-      : knots_(knots),
-        setup_(setup),
-        starts_(starts),
-        earth_(kEarthRate * std::cos(setup.site.latitude)),
-        fixed_(FixedIn(windows, setup, earth_)) {
-    for (RollWindow w : windows) {
-      if (w.node < first || w.node >= first + knots.size()) continue;
-      w.node -= first;
-      windows_.push_back(w);
-    }
+/// Windows within knots [begin, end), counted from there.
+std::vector<RollWindow> Within(std::span<const RollWindow> windows, std::size_t begin,
+                               std::size_t end) {
+  std::vector<RollWindow> within;
+  for (RollWindow w : windows) {
+    if (w.node < begin || w.node >= end) continue;
+    w.node -= begin;
+    within.push_back(w);
   }
+  return within;
+}
 
-  /// The rate of every knot.
-  std::vector<std::size_t> Spins() {
-    std::vector<std::size_t> spins(knots_.size());
-    for (std::size_t begin = 0; begin < knots_.size(); begin += kPiece) {
-      SolvePiece(begin, std::span(spins));
-    }
-    return spins;
-  }
-
- private:
-  /// Residual of a knot's reading less `bias`, for each half step of the heading in its middle,
-  /// over sigma sqrt(2): its square is -ln of the likelihood. Twice around, so that no index wraps.
-  struct Left {
-    std::array<float, 4 * kSteps> x, y;
-  };
-
-  Left LeftOf(const RunKnot& knot, Complex bend_L, double per_sigma) const {
-    const Increment& i = knot.increment;
-    const Complex read = Complex(i.turn_M.x(), i.turn_M.y()) / i.seconds - fixed_.bias;
-    Left left;
-    for (std::size_t m = 0; m < 2 * kSteps; ++m) {
-      const Complex seen =
-          (earth_ + bend_L) * std::polar(1.0, -0.5 * kHeadingStep * static_cast<double>(m));
-      const Complex off = (read - seen) * per_sigma;
-      left.x[m] = left.x[m + 2 * kSteps] = static_cast<float>(off.real());
-      left.y[m] = left.y[m + 2 * kSteps] = static_cast<float>(off.imag());
-    }
-    return left;
-  }
-
-  /// The rate may change before a knot: cost(i) <- min over j of cost(j) + |i - j| step / change,
-  /// and the j (the distance transform of Felzenszwalb and Huttenlocher, 2012).
-  void ChangeRates(double change, Grid<std::uint8_t>& from) {
-    for (std::size_t spin = 0; spin < kSpins; ++spin) {
-      from[spin].fill(static_cast<std::uint8_t>(spin));
-    }
-    const auto cost = static_cast<float>(kHeadingStep / change);
-    const auto pass = [&](std::size_t to, std::size_t next) {
-      for (std::size_t h = 0; h < kSteps; ++h) {
-        const float moved = costs_[next][h] + cost;
-        const bool less = moved < costs_[to][h];
-        costs_[to][h] = less ? moved : costs_[to][h];
-        from[to][h] = less ? from[next][h] : from[to][h];
-      }
-    };
-    for (std::size_t spin = 1; spin < kSpins; ++spin) pass(spin, spin - 1);
-    for (std::size_t spin = kSpins - 1; spin-- > 0;) pass(spin, spin + 1);
-  }
-
-  /// A step of Viterbi's algorithm: the rate may change, each pair of rate and heading costs what
-  /// the knot's reading says of it, and the headings turn by their rates.
-  void Pass(std::size_t k, Grid<std::uint8_t>& from) {
-    const RunKnot& knot = knots_[k];
-    const double seconds = knot.increment.seconds;
-    const RollWindow* window = WindowAt(windows_, k);
-    const double var = Square(setup_.gyro.angle_random_walk) / seconds + Square(kLoose * earth_);
-    const double per_sigma = 1 / std::sqrt(2 * var);
-    const Left left = LeftOf(knot, window != nullptr ? window->bend_L : Complex(), per_sigma);
-    ChangeRates(starts_[k] > 0 ? kChangeStarting : kChange, from);
-    float least = kBarred;
-    for (std::size_t spin = 0; spin < kSpins; ++spin) {
-      const double rate = SpinRate(spin);
-      double apart = 0;
-      if (window != nullptr) apart = std::min(std::abs(rate - window->rate) / kOffWindow, 1.0);
-      float by_rate = static_cast<float>(apart);
-      if (knot.still && rate != 0) by_rate = kBarred;
-      const Complex skewed = fixed_.skew * rate * per_sigma;
-      const auto skew_x = static_cast<float>(skewed.real());
-      const auto skew_y = static_cast<float>(skewed.imag());
-      const float stranger = Reads(knot) ? static_cast<float>(kStranger) : 0.0F;
-      const long turned = StepsIn(spin, seconds);
-      const std::size_t steps = Around(turned, kSteps), half_steps = Around(turned, 2 * kSteps);
-      std::array<float, kSteps>& costs = costs_[spin];
-      for (std::size_t h = 0; h < kSteps; ++h) {
-        // The heading in the middle, in half steps: the begin's and half of the knot's turn.
-        const std::size_t middle = 2 * h + half_steps;
-        const float x = left.x[middle] - skew_x, y = left.y[middle] - skew_y;
-        costs[h] += std::min(x * x + y * y, stranger) + by_rate;
-      }
-      least = std::min(least, *std::min_element(costs.begin(), costs.end()));
-      std::rotate(costs.begin(), costs.end() - static_cast<std::ptrdiff_t>(steps), costs.end());
-    }
-    for (std::array<float, kSteps>& row : costs_) {
-      for (float& cost : row) cost -= least;
-    }
-  }
-
-  /// Knots from `begin` on, by what those before them and kAgain after them tell.
-  void SolvePiece(std::size_t begin, std::span<std::size_t> spins) {
-    const std::size_t end = std::min(begin + kPiece, knots_.size());
-    const std::size_t seen = std::min(end + kAgain, knots_.size());
-    std::vector<Grid<std::uint8_t>> from(seen - begin);
-    for (std::size_t k = begin; k < end; ++k) Pass(k, from[k - begin]);
-    const Grid<float> costs = costs_;
-    for (std::size_t k = end; k < seen; ++k) Pass(k, from[k - begin]);
-    std::size_t spin = 0, heading = 0;
-    for (std::size_t s = 0; s < kSpins; ++s) {
-      const auto best = std::min_element(costs_[s].begin(), costs_[s].end());
-      if (!(*best < costs_[spin][heading]) && s > 0) continue;
-      spin = s;
-      heading = static_cast<std::size_t>(best - costs_[s].begin());
-    }
-    for (std::size_t k = seen; k-- > begin;) {
-      spins[k] = spin;
-      const long steps = StepsIn(spin, knots_[k].increment.seconds);
-      heading = Around(static_cast<long>(heading) - steps, kSteps);
-      spin = from[k - begin][spin][heading];
-    }
-    costs_ = costs;
-  }
-
-  std::span<const RunKnot> knots_;
-  const EstimateSetup& setup_;
-  std::span<const double> starts_;
-  double earth_;
-  Fixed fixed_;
-  std::vector<RollWindow> windows_;
-  Grid<float> costs_{};
-};
-
-/// By the likeliest path.
-std::vector<double> AlongPath(std::span<const RunKnot> knots, const EstimateSetup& setup,
-                              std::span<const RollWindow> windows) {
-  std::vector<double> hidden(knots.size(), 0);
-  if (!AnyRollIsHidden(knots)) return hidden;
-  const std::vector<double> starts = SpeedStarts(knots);
+/// Calls `take(begin, end)` for every stretch of knots in a row whose heading gravity does not
+/// show, rests among them.
+template <typename Take>
+void ForEachStretch(std::span<const RunKnot> knots, const Take& take) {
   const auto unseen = [&](std::size_t k) {
     return !knots[k].increment.roll_seen && knots[k].increment.seconds > 0;
   };
   for (std::size_t begin = 0, end = 0; begin < knots.size(); begin = std::max(end, begin + 1)) {
     for (end = begin; end < knots.size() && unseen(end);) ++end;
-    const std::size_t size = end - begin;
-    if (size < kLeast) continue;
-    const std::vector<std::size_t> spins = Stretch(knots.subspan(begin, size), begin, setup,
-                                                   std::span(starts).subspan(begin, size), windows)
-                                               .Spins();
-    for (std::size_t k = begin; k < end; ++k) {
-      const Increment& i = knots[k].increment;
-      if (knots[k].still) continue;
-      const auto steps = static_cast<double>(StepsIn(spins[k - begin], i.seconds));
-      hidden[k] = (steps * kHeadingStep - i.roll()) / i.seconds;
-    }
+    if (end - begin >= kLeast) take(begin, end);
   }
-  return hidden;
 }
 
-/// By the rate of the nearest window.
-std::vector<double> OfWindows(std::span<const RunKnot> knots, std::span<const RollWindow> windows) {
-  std::vector<double> hidden(knots.size(), 0);
-  for (std::size_t k = 0; k < knots.size() && !windows.empty(); ++k) {
-    const Increment& i = knots[k].increment;
-    if (!RollIsHidden(knots[k]) || !(i.seconds > 0)) continue;
-    hidden[k] = WindowAt(windows, k)->rate - i.roll() / i.seconds;
-  }
-  return hidden;
+/// The reading of knot k, without what is read.
+RollReading ReadingOf(const RunKnot& knot, double speed_start) {
+  RollReading reading;
+  reading.seconds = knot.increment.seconds;
+  reading.tells = Reads(knot);
+  reading.still = knot.still;
+  reading.may_start = speed_start > 0;
+  return reading;
 }
 
 /// Roll rate by how the gyros' reading turns from one knot's middle to the next one's [rad/s].
@@ -326,6 +161,46 @@ std::vector<double> OfNeighbours(std::span<const RunKnot> knots, const EstimateS
   return hidden;
 }
 
+/// A solution as the grid reads it.
+class Solved {
+ public:
+  Solved(const EstimateSetup& setup, std::span<const RunKnot> knots, const RunState* before,
+         std::span<const Node> nodes, const BorderVector& border)
+      : setup_(setup),
+        layout_(LayoutOf(setup)),
+        known_(KnownErrors(setup)),
+        knots_(knots),
+        nodes_(nodes),
+        border_(border) {
+    PlaceKnots(setup.site, before, knots, nodes, places_);
+  }
+
+  /// Heading of node k, a turn about the vertical [rad].
+  double HeadingAt(std::size_t k) const { return AngleAboutZ(nodes_[k].R_LT); }
+
+  /// Sets what knot k reads and what it would at heading zero. Returns the skew of the gyros.
+  Complex Read(std::size_t k, RollReading& reading) const {
+    const KnotTerms t = TermsOf({setup_, layout_, known_}, knots_[k], places_[k], border_,
+                                nodes_[k], nodes_[k + 1]);
+    const Vector3d bend_L = nodes_[k].tangent_L().cross(nodes_[k + 1].tangent_L()) / t.dt;
+    const Vector3d rate_M = t.R_LM.transpose() * (t.w_IL_L + bend_L);
+    const Complex skew(t.error[kMisalignmentX], t.error[kMisalignmentY]);
+    const double rate = (t.inc.roll() + t.delta) / t.dt;
+    reading.read = Complex(t.turn.x(), t.turn.y()) / t.dt + rate * skew;
+    reading.at_zero = Complex(rate_M.x(), rate_M.y()) * std::polar(1.0, AngleAboutZ(t.R_LM));
+    return skew;
+  }
+
+ private:
+  const EstimateSetup& setup_;
+  Layout layout_;
+  ErrorVector known_;
+  std::span<const RunKnot> knots_;
+  std::span<const Node> nodes_;
+  const BorderVector& border_;
+  std::vector<KnotPlace> places_;
+};
+
 }  // namespace
 
 bool RollIsHidden(const RunKnot& knot) { return !knot.increment.roll_seen && !knot.still; }
@@ -335,17 +210,69 @@ bool AnyRollIsHidden(std::span<const RunKnot> knots) {
 }
 
 std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSetup& setup) {
-  return AlongPath(knots, setup, WindowsOf(knots, setup));
+  std::vector<double> hidden(knots.size(), 0);
+  if (!AnyRollIsHidden(knots)) return hidden;
+  const std::vector<double> starts = SpeedStarts(knots);
+  const std::vector<RollWindow> all = WindowsOf(knots, setup);
+  const double earth = kEarthRate * std::cos(setup.site.latitude);
+  const Fixed fixed = FixedIn(all, setup, earth);
+  const RollModel model{.skew = fixed.skew,
+                        .gyro_noise = setup.gyro.angle_random_walk,
+                        .model_sigma = kLoose * earth,
+                        .rate_change = kChange,
+                        .rate_change_started = kChangeStarting};
+  ForEachStretch(knots, [&](std::size_t begin, std::size_t end) {
+    const std::vector<RollWindow> windows = Within(all, begin, end);
+    std::vector<RollReading> readings;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Increment& i = knots[k].increment;
+      const RollWindow* window = WindowAt(windows, k - begin);
+      RollReading& reading = readings.emplace_back(ReadingOf(knots[k], starts[k]));
+      reading.read = Complex(i.turn_M.x(), i.turn_M.y()) / i.seconds - fixed.bias;
+      reading.at_zero = earth + (window != nullptr ? window->bend_L : Complex());
+      if (window != nullptr) reading.expected_rate = window->rate;
+    }
+    const RollPath path = LikeliestRoll(readings, model);
+    for (std::size_t k = begin; k < end; ++k) {
+      const Increment& i = knots[k].increment;
+      if (!knots[k].still) hidden[k] = (path.turns[k - begin] - i.roll()) / i.seconds;
+    }
+  });
+  return hidden;
 }
 
 std::vector<std::vector<double>> HiddenRolls(std::span<const RunKnot> knots,
                                              const EstimateSetup& setup) {
-  const std::vector<RollWindow> windows = WindowsOf(knots, setup);
-  std::vector<std::vector<double>> rolls = {AlongPath(knots, setup, windows)};
-  if (!AnyRollIsHidden(knots)) return rolls;
-  rolls.push_back(OfWindows(knots, windows));
-  rolls.push_back(OfNeighbours(knots, setup));
+  std::vector<std::vector<double>> rolls = {HiddenRoll(knots, setup)};
+  if (AnyRollIsHidden(knots)) rolls.push_back(OfNeighbours(knots, setup));
   return rolls;
+}
+
+NodeGuess RollAbout(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                    const RunState* before, std::span<const Node> nodes,
+                    const BorderVector& border) {
+  const Solved solved(setup, knots, before, nodes, border);
+  NodeGuess guess;
+  for (const Node& node : nodes) guess.push_back({node.R_LT, node.roll_rate, node.md, node.speed});
+  const std::vector<double> starts = SpeedStarts(knots);
+  RollModel model{.gyro_noise = setup.gyro.angle_random_walk,
+                  .model_sigma = kLooseAbout * kEarthRate * std::cos(setup.site.latitude),
+                  .rate_change = kChangeAbout,
+                  .rate_change_started = kChangeStartingAbout};
+  ForEachStretch(knots, [&](std::size_t begin, std::size_t end) {
+    std::vector<RollReading> readings;
+    for (std::size_t k = begin; k < end; ++k) {
+      readings.push_back(ReadingOf(knots[k], starts[k]));
+      model.skew = solved.Read(k, readings.back());
+    }
+    const RollPath path = LikeliestRoll(readings, model);
+    for (std::size_t k = begin; k < end; ++k) {
+      Node& node = guess[k];
+      node.R_LT = node.R_LT * RotationZ(path.headings[k - begin] - solved.HeadingAt(k));
+      node.roll_rate = path.turns[k - begin] / knots[k].increment.seconds;
+    }
+  });
+  return guess;
 }
 
 }  // namespace wellgyro

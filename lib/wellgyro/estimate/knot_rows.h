@@ -38,10 +38,8 @@ struct RunScales {
 class KnotRows {
  public:
   /// Both must outlive this object.
-  KnotRows(const EstimateSetup& setup, const Layout& layout) : setup_(setup), layout_(layout) {
-    known_[kMisalignmentX] = setup.errors.gyro_misalignment_x;
-    known_[kMisalignmentY] = setup.errors.gyro_misalignment_y;
-  }
+  KnotRows(const EstimateSetup& setup, const Layout& layout)
+      : setup_(setup), layout_(layout), known_(KnownErrors(setup)) {}
 
   void Add(const RunKnot& knot, const KnotPlace& place, const RollChange& roll,
            const BorderVector& border, const Node& begin, const Node& end, NormalBlock& block);
@@ -73,7 +71,7 @@ class KnotRows {
 
   const EstimateSetup& setup_;
   const Layout& layout_;
-  ErrorVector known_ = ErrorVector::Zero();
+  ErrorVector known_;
   Factor factor_;
 };
 

@@ -86,6 +86,13 @@ void CorrectTurn(KnotTerms& t) {
 
 }  // namespace
 
+ErrorVector KnownErrors(const EstimateSetup& setup) {
+  ErrorVector known = ErrorVector::Zero();
+  known[kMisalignmentX] = setup.errors.gyro_misalignment_x;
+  known[kMisalignmentY] = setup.errors.gyro_misalignment_y;
+  return known;
+}
+
 KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& place,
                   const BorderVector& border, const Node& begin, const Node& end) {
   const Layout& layout = model.layout;

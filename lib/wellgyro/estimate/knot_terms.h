@@ -48,6 +48,9 @@ struct KnotModel {
   const ErrorVector& known;  ///< errors before the border's
 };
 
+/// Errors of the tool that the setup knows, beside which the border has the rest.
+ErrorVector KnownErrors(const EstimateSetup& setup);
+
 /// An increment's turn and force about the present nodes and errors. All must outlive the terms.
 KnotTerms TermsOf(const KnotModel& model, const RunKnot& knot, const KnotPlace& place,
                   const BorderVector& border, const Node& begin, const Node& end);

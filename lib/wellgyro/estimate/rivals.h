@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Solution {
   double evidence = HUGE_VAL;
   NodeGuess nodes;
   BorderVector border;
+  std::optional<double> swing;  ///< of the setup [rad/s]
 };
 
 /// Keeps another solution than the chosen one, of `evidence` and `nodes`, if it comes near it. One

@@ -31,6 +31,9 @@ constexpr double kTooLarge = 4;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
+// Each is begun from a better one; of 21 random wells that were hard none was bettered a third time
+// by as much as decides.
+constexpr int kAboutMost = 3;
 
 /// Covariance of the sources' constant errors, from the border's; zero for those it does not have.
 ErrorMatrix OfSources(const Layout& layout, const BorderMatrix& border) {
@@ -214,46 +217,85 @@ void AddRival(Solution other, Choice& choice) {
   AddRival(std::move(other), choice.report.evidence, choice.solver->nodes(), choice.rivals);
 }
 
-/// Solves from one guess; keeps the solution where it betters those before. Returns where it ended.
-NodeGuess SolveFrom(const NodeGuess& guess, const EstimateSetup& setup,
-                    std::span<const RunKnot> knots, const RunState* before, Solution& solution,
-                    Choice& choice, const RollBegin& begin = {}) {
-  auto solver = std::make_unique<RunSolver>(setup, knots, before);
+/// A run, and what it is solved as.
+struct Problem {
+  const EstimateSetup& setup;
+  std::span<const RunKnot> knots;
+  const RunState* before;
+  std::vector<RollBegin> begins;  ///< of a roll rate that walks
+  bool may_swing = false;
+  bool hides_roll = false;
+  std::optional<double> swing;  ///< of the roll where gravity shows it [rad/s]
+};
+
+Problem ProblemOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                  const RunState* before) {
+  Problem p{.setup = setup, .knots = knots, .before = before, .begins = RollBeginsOf(knots)};
+  p.may_swing = setup.may_swing && !setup.third_axis;
+  p.hides_roll = AnyRollIsHidden(knots);
+  if (p.may_swing) p.swing = SwingOf(knots);
+  return p;
+}
+
+EstimateSetup SetupWith(const EstimateSetup& setup, std::optional<double> swing) {
+  EstimateSetup with = setup;
+  with.swing = swing;
+  return with;
+}
+
+/// Solves from one guess, with a swing of this frequency or none; keeps the solution where it
+/// betters those before. Returns where it ended.
+NodeGuess SolveFrom(const NodeGuess& guess, const Problem& p, std::optional<double> swing,
+                    const RollBegin& begin, Solution& solution, Choice& choice) {
+  auto solver = std::make_unique<RunSolver>(SetupWith(p.setup, swing), p.knots, p.before);
   solver->nodes() = guess;
   const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
   const SolveReport report = solver->Solve(kSolveIterations, best + kDecides, begin);
   NodeGuess nodes = solver->nodes();
   choice.least_evidence = std::min(choice.least_evidence, report.evidence);
   if (!report.converged || !(report.evidence < solution.evidence)) return nodes;
-  solution = {report.evidence, nodes, solver->border()};
+  solution = {report.evidence, nodes, solver->border(), swing};
   if (choice.solver && !(report.evidence < choice.report.evidence)) return nodes;
   choice.report = report;
   choice.solver = std::move(solver);
   return nodes;
 }
 
-/// Solves from each guess with the roll rate as a random walk and, where it swings, as that and a
-/// swing, whose frequency gravity shows or else, where the roll is hidden, the walk's solution.
+/// Solves from one guess with the roll rate as the setup has it, a random walk, and, where it
+/// swings, as that and a swing, whose frequency gravity shows or else, where the roll is hidden,
+/// the walk's solution.
+void SolveFrom(const NodeGuess& guess, const Problem& p, Solution& solution, Choice& choice) {
+  if (p.swing) SolveFrom(guess, p, p.swing, {}, solution, choice);
+  NodeGuess walk;
+  for (const RollBegin& begin : p.begins) {
+    const double evidence = solution.evidence;
+    NodeGuess nodes = SolveFrom(guess, p, p.setup.swing, begin, solution, choice);
+    if (walk.empty() || solution.evidence < evidence) walk = std::move(nodes);
+  }
+  if (p.swing || !p.may_swing || !p.hides_roll) return;
+  const std::optional<double> swing = SwingOf(p.knots, walk);
+  if (swing) SolveFrom(walk, p, swing, {}, solution, choice);
+}
+
+/// Solves again from nearby a solution as long as that is better, where it may be a local minimum.
+void SolveAbout(const Problem& p, Solution& solution, Choice& choice) {
+  for (int i = 0; i < kAboutMost && p.hides_roll && !solution.nodes.empty(); ++i) {
+    const double evidence = solution.evidence;
+    const NodeGuess about = RollAbout(SetupWith(p.setup, solution.swing), p.knots, p.before,
+                                      solution.nodes, solution.border);
+    SolveFrom(about, p, solution, choice);
+    if (!(solution.evidence < evidence - kDecides)) return;
+  }
+}
+
 Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
               std::span<const NodeGuess> guesses, const RunState* before) {
-  EstimateSetup swings = setup;
-  const bool may_swing = setup.may_swing && !setup.third_axis;
-  if (may_swing) swings.swing = SwingOf(knots);
-  const bool seen = swings.swing.has_value();
-  const std::vector<RollBegin> begins = RollBeginsOf(knots);
+  const Problem problem = ProblemOf(setup, knots, before);
   std::vector<Solution> solutions(guesses.size());
   Choice choice;
   for (std::size_t i = 0; i < guesses.size(); ++i) {
-    if (seen) SolveFrom(guesses[i], swings, knots, before, solutions[i], choice);
-    NodeGuess walk;
-    for (const RollBegin& begin : begins) {
-      const double evidence = solutions[i].evidence;
-      NodeGuess nodes = SolveFrom(guesses[i], setup, knots, before, solutions[i], choice, begin);
-      if (walk.empty() || solutions[i].evidence < evidence) walk = std::move(nodes);
-    }
-    if (seen || !may_swing || !AnyRollIsHidden(knots)) continue;
-    swings.swing = SwingOf(knots, walk);
-    if (swings.swing) SolveFrom(walk, swings, knots, before, solutions[i], choice);
+    SolveFrom(guesses[i], problem, solutions[i], choice);
+    SolveAbout(problem, solutions[i], choice);
   }
   for (Solution& s : solutions) AddRival(std::move(s), choice);
   return choice;
@@ -370,7 +412,9 @@ bool TakeIfBetter(Choice other, std::span<const std::size_t> marked, Choice& cho
   if (better) std::swap(choice, other);
   for (Solution& rival : other.rivals) AddRival(std::move(rival), choice);
   if (other.solver) {
-    AddRival({other.report.evidence, other.solver->nodes(), other.solver->border()}, choice);
+    AddRival({other.report.evidence, other.solver->nodes(), other.solver->border(),
+              other.solver->setup().swing},
+             choice);
   }
   if (better) Take(choice, marked, result);
   return better;

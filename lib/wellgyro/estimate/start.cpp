@@ -34,12 +34,6 @@ Matrix3d LevelAttitude(std::span<const RunKnot> knots) {
   return Matrix3d::Identity();
 }
 
-/// The turn about the vertical that takes `from` nearest to `to`.
-double HeadingBetween(const Matrix3d& from, const Matrix3d& to) {
-  const Matrix3d turn = to * from.transpose();
-  return std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
-}
-
 /// Distributes `angle` over the hidden knots between two nodes, by their lengths, as further roll.
 void Spread(double angle, std::span<const RunKnot> knots, std::size_t begin, std::size_t end,
             std::vector<double>& extra) {
@@ -62,7 +56,7 @@ NodeGuess GuessOf(const EstimateSetup& setup, std::span<const RunKnot> knots, co
   std::size_t from = 0;
   const auto heading = [&](const Anchor& anchor) {
     pass.Run(from, anchor.node);
-    return HeadingBetween(pass.nodes()[anchor.node].R_LT, anchor.R_LT);
+    return AngleAboutZ(anchor.R_LT * pass.nodes()[anchor.node].R_LT.transpose());
   };
   // The Earth's rate depends on the heading: until it stays to a milliradian.
   for (int i = 0; i < 3; ++i) {

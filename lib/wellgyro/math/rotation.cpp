@@ -21,6 +21,10 @@ Eigen::Matrix3d RotationZ(double angle) {
   return (Eigen::Matrix3d() << c, -s, 0, s, c, 0, 0, 0, 1).finished();
 }
 
+double AngleAboutZ(const Eigen::Matrix3d& R) {
+  return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+}
+
 Eigen::Matrix3d AttitudeMatrix(double azimuth, double inclination, double toolface) {
   return RotationZ(azimuth) * RotationY(inclination) * RotationZ(toolface);
 }

@@ -11,6 +11,11 @@ WELLGYRO_EXPORT Eigen::Matrix3d RotationX(double angle);
 WELLGYRO_EXPORT Eigen::Matrix3d RotationY(double angle);
 WELLGYRO_EXPORT Eigen::Matrix3d RotationZ(double angle);
 
+/// The angle in [-pi, pi] by which RotationZ() comes nearest to a rotation, in the Frobenius norm
+/// [rad]: of R_LT the heading of a tool near vertical. Of a half turn about a horizontal axis it is
+/// any.
+WELLGYRO_EXPORT double AngleAboutZ(const Eigen::Matrix3d& rotation);
+
 /// R_LT = Rz(azimuth) Ry(inclination) Rz(toolface): tool T to local level L (north, east, down).
 WELLGYRO_EXPORT Eigen::Matrix3d AttitudeMatrix(double azimuth, double inclination, double toolface);
 
