@@ -1,8 +1,10 @@
-// Stretches of the hole that one way did not see for want of depth marks, and runs of one job that
-// overlap or do not meet.
+// Stretches of the hole that one way did not see for want of depth marks, ways in that are drawn
+// back, and runs of one job that overlap or do not meet.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -151,6 +153,53 @@ TEST(DepthGaps, DepthsGuessedBetweenMarksMoveTheWayBelow) {
   ASSERT_NE(Find(whole, "depth_unsure"), nullptr);
   EXPECT_EQ(Find(whole, "depth_unsure")->verdict, Verdict::kPass);
 }
+
+/// On the way in the tool is drawn back at some depths, and the log ends below.
+struct DrawnBack {
+  const char* name;
+  std::vector<double> at;  ///< [m]
+  double by;               ///< [m]
+};
+
+class PullBack : public testing::TestWithParam<DrawnBack> {};
+
+// Each begins another pass in the hole, which hangs on the way that reached it and not on the well
+// head.
+TEST_P(PullBack, MovesNoStationBelowIt) {
+  Simulation simulation = Bent();
+  Sink sink;
+  const Survey straight_in = testing::SurveyOf(simulation, BentJob(), sink);
+  simulation.run.steps = {RunStop{.seconds = 90}};
+  const auto move_to = [&](double md) {
+    simulation.run.steps.push_back(RunMove{.to_md = md, .roll = {.rate = kTwoPi / 60}});
+  };
+  for (const double md : GetParam().at) {
+    move_to(md);
+    move_to(md - GetParam().by);
+    simulation.run.steps.push_back(RunStop{.seconds = 60});
+  }
+  move_to(400);
+  simulation.run.steps.push_back(RunStop{.seconds = 90});
+  const Survey survey = testing::SurveyOf(simulation, BentJob(), sink);
+  ASSERT_EQ(survey.unusable, "");
+  ASSERT_GE(survey.chosen.size(), straight_in.chosen.size());
+  const EndOff whole = EndOf(straight_in, simulation), end = EndOf(survey, simulation);
+  ASSERT_GT(whole.sigma, 0);
+  EXPECT_LT(end.metres, 0.3);
+  EXPECT_LT(end.square, kMost) << end.metres << " m, sigma " << end.sigma;
+  EXPECT_LT(end.sigma, 1.3 * whole.sigma) << whole.sigma;
+  EXPECT_GT(end.sigma, 0.7 * whole.sigma) << whole.sigma;
+  for (const Station& s : survey.passes) {
+    EXPECT_LT(s.dogleg_severity, 1.3 * FromDegrees(0.2))
+        << s.md << " m in pass " << s.pass_number << ", the hole has 0.2 deg/m";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, PullBack,
+                         testing::Values(DrawnBack{"Once", {230}, 3},
+                                         DrawnBack{"Often", {100, 160, 190, 220, 250, 320}, 20},
+                                         DrawnBack{"Far", {230, 300}, 130}),
+                         [](const auto& c) { return std::string(c.param.name); });
 
 /// From the well head to 230 m, then from `from` on, with `shift` in the second run's depths.
 Survey OfTwoRuns(double from, double shift) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -30,20 +31,19 @@ std::optional<PathStart> StartOnLine(const Site& head, const PassLine& line, dou
 }
 
 /// Start of a pass whose first depth is below the tie-in, the hole between unseen by it: the point
-/// at that depth with the least covariance, on the lines of other runs, the first `count`; where
-/// none of them reaches it, the deepest point that they have; absent where they have none.
-std::optional<PathStart> StartOnOther(const Site& head, const std::vector<PassLine>& lines,
-                                      std::size_t count, const PathStart& tie,
-                                      const PassItems& pass) {
+/// at that depth with the least covariance on these lines; where none of them reaches it, the
+/// deepest point that they have; absent where they have none.
+std::optional<PathStart> StartOnAny(const Site& head, std::span<const PassLine* const> lines,
+                                    const PathStart& tie, const PassItems& pass) {
   const double from = SeenFrom(pass);
   std::optional<PathStart> best;
   if (from - tie.point.station.md <= kUnseenLeg) return best;
   const PassLine* deepest = nullptr;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double end = lines[i].points.back().station.md;
-    if (!deepest || end > deepest->points.back().station.md) deepest = &lines[i];
+  for (const PassLine* line : lines) {
+    const double end = line->points.back().station.md;
+    if (!deepest || end > deepest->points.back().station.md) deepest = line;
     if (end < from - kUnseenLeg) continue;
-    const auto start = StartOnLine(head, lines[i], std::min(from, end), tie.top_tangent_W);
+    const auto start = StartOnLine(head, *line, std::min(from, end), tie.top_tangent_W);
     if (start && (!best || start->cov_p_WT_W.trace() < best->cov_p_WT_W.trace())) best = start;
   }
   if (best || !deepest || deepest->points.size() < 2) return best;
@@ -60,10 +60,8 @@ double SeverityOf(double length, const Eigen::Vector3d& t1, const Eigen::Vector3
 PassLine PlaceStations(const Site& head, const Job& job, const PathStart& start, PassItems& pass) {
   const PassCovariances covs = PassCovariancesOf(job, pass, start);
   Path path(head, start.point.station, start.point.p_WT_W);
-  PassLine line{pass.front().station.run,
-                pass.front().station.pass_number,
-                {start.point},
-                {start.cov_p_WT_W}};
+  const Station& own = std::ranges::find(pass, false, &PassItem::carried)->station;
+  PassLine line{own.run, own.pass_number, {start.point}, {start.cov_p_WT_W}};
   PathPoint above = start.point;
   for (std::size_t i = 0; i < pass.size(); ++i) {
     Station& s = pass[i].station;
@@ -87,7 +85,8 @@ PassLine PlaceStations(const Site& head, const Job& job, const PathStart& start,
     if (!add(PathOf(s))) continue;
     s.p_WT_W = path.last().p_WT_W;
     s.dogleg_severity = SeverityOf(s.md - above.station.md, above.tangent_W, path.last().tangent_W);
-    above = path.last();
+    // One that is not listed, a stop or a turn, may be a millimetre above: that leg is all noise.
+    if (pass[i].listed) above = path.last();
   }
   return line;
 }
@@ -139,6 +138,20 @@ std::vector<std::size_t> ShallowestFirst(const std::vector<std::vector<PassItems
   return order;
 }
 
+/// Passes in the order in which they are placed: first those from the top, the deepest foremost,
+/// then the others by where they begin, since each of these may have to start on one before.
+std::vector<std::size_t> TopmostFirst(const std::vector<PassItems>& passes) {
+  std::vector<std::size_t> order(passes.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const double top = ShallowestDepth(passes) + kUnseenLeg;
+  const auto begin = [&](std::size_t i) { return std::max(SeenFrom(passes[i]), top); };
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    if (begin(a) != begin(b)) return begin(a) < begin(b);
+    return passes[a].back().station.md > passes[b].back().station.md;
+  });
+  return order;
+}
+
 /// Of one run, into `lines`; `good` are those of the runs that count, which may be the same.
 void PlaceAll(const Site& head, const Job& job, const Station& opening,
               const std::vector<PassLine>& good, std::vector<PassItems>& passes,
@@ -149,26 +162,20 @@ void PlaceAll(const Site& head, const Job& job, const Station& opening,
   tie.point.tangent_W = Tangent(opening.inclination, opening.azimuth);
   tie.cov_p_WT_W = opening.cov_p_WT_W;
   tie.top_tangent_W = tie.point.tangent_W;
-  // The pass that reaches deepest from the tie-in comes first: others may have to start on it.
-  std::vector<std::size_t> order(passes.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const double top = ShallowestDepth(passes) + kSameDepth;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const bool a_top = passes[a].front().station.md <= top;
-    const bool b_top = passes[b].front().station.md <= top;
-    if (a_top != b_top) return a_top;
-    return passes[a].back().station.md > passes[b].back().station.md;
-  });
-  const std::size_t others = good.size();
-  std::size_t main_line = lines.size();  // the deepest so far, of this run
+  const std::size_t others = good.size(), own = lines.size();
+  std::size_t main_line = own;  // the deepest so far, of this run
   const auto depth = [&](std::size_t i) { return lines[i].points.back().station.md; };
-  for (std::size_t i : order) {
+  for (std::size_t i : TopmostFirst(passes)) {
     const double first = passes[i].front().station.md;
+    std::vector<const PassLine*> placed;
+    for (std::size_t j = 0; j < others; ++j) placed.push_back(&good[j]);
     std::optional<PathStart> start;
-    if (main_line < lines.size()) {
+    if (first > top && main_line < lines.size()) {
       start = StartOnLine(head, lines[main_line], first, tie.top_tangent_W);
+      for (std::size_t j = own; j < lines.size(); ++j) placed.push_back(&lines[j]);
     }
-    if (!start || first <= top) start = StartOnOther(head, good, others, tie, passes[i]);
+    if (!start) start = StartOnAny(head, placed, tie, passes[i]);
     lines.push_back(PlaceStations(head, job, start.value_or(tie), passes[i]));
     if (depth(lines.size() - 1) > depth(main_line)) main_line = lines.size() - 1;
   }
@@ -193,7 +200,8 @@ void List(const std::vector<PassItems>& passes, double tie_md, bool misrun, Plac
   for (const PassItems& pass : passes) {
     std::vector<Station> stations;
     for (const PassItem& item : pass) {
-      if (!item.listed || !item.on_line || item.station.md <= tie_md + kSameDepth) continue;
+      if (!item.listed || item.carried || !item.on_line) continue;
+      if (item.station.md <= tie_md + kSameDepth) continue;
       stations.push_back(item.station);
       if (misrun && stations.back().status != StationStatus::kRejected) {
         stations.back().status = StationStatus::kSuperseded;

@@ -17,6 +17,7 @@ struct PassItem {
   const StationState* state = nullptr;  ///< nullptr: from a window of its own
   bool listed = true;
   bool on_line = true;                ///< deeper than the one before
+  bool carried = false;               ///< of an earlier pass, on which this one begins
   std::vector<PathStation> way = {};  ///< from the one before on the line
 };
 using PassItems = std::vector<PassItem>;  ///< in the order of depth

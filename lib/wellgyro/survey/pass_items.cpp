@@ -102,6 +102,61 @@ void FillGaps(std::vector<PassItems>& passes) {
   }
 }
 
+bool GoesOut(const PassItems& pass) { return pass.front().station.pass == Pass::kOut; }
+
+/// Of some passes in a row every station as the tool met it; empty where one has no state of its
+/// own, or time stands still.
+PassItems InTimeOrder(std::span<const PassItems> passes) {
+  PassItems items;
+  for (const PassItems& pass : passes) {
+    if (GoesOut(pass)) {
+      items.insert(items.end(), pass.rbegin(), pass.rend());
+    } else {
+      items.insert(items.end(), pass.begin(), pass.end());
+    }
+  }
+  const auto stateless = [](const PassItem& item) { return item.state == nullptr; };
+  const auto not_later = [](const PassItem& a, const PassItem& b) {
+    return a.state->knot >= b.state->knot;
+  };
+  if (std::ranges::any_of(items, stateless)) return {};
+  return std::ranges::adjacent_find(items, not_later) == items.end() ? items : PassItems{};
+}
+
+/// The last of some passes behind those that led to where it begins; as it is where none did. Of
+/// these the stations above count, the others only carry the correlations on: errors of one tool
+/// on one way, and not independent of each other as those of two lines.
+PassItems Continued(std::span<const PassItems> passes, std::span<const Waypoint> way) {
+  const PassItems& own = passes.back();
+  PassItems whole = InTimeOrder(passes);
+  const PassItem* above = nullptr;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    PassItem& item = whole[i];
+    if (i + own.size() < whole.size()) {
+      item.carried = true;
+      item.on_line = item.station.pass != Pass::kOut && item.station.md < SeenFrom(own) &&
+                     (above == nullptr || item.station.md > above->station.md);
+    }
+    if (!item.on_line) continue;
+    if (above != nullptr && above->station.pass_number != item.station.pass_number) {
+      item.way = WayBetween(way, above->station, item.station);
+    }
+    above = &item;
+  }
+  return !whole.empty() && whole.front().on_line ? whole : own;
+}
+
+/// A tool may be drawn back on its way in: what follows is a pass that begins in the hole.
+void ContinueWays(std::span<const Waypoint> way, std::vector<PassItems>& passes) {
+  double top = HUGE_VAL;
+  for (const PassItems& pass : passes) top = std::min(top, SeenFrom(pass));
+  const std::vector<PassItems> as_met = passes;
+  for (std::size_t i = 1; i < passes.size(); ++i) {
+    if (GoesOut(passes[i]) || SeenFrom(passes[i]) - top <= kUnseenLeg) continue;
+    passes[i] = Continued(std::span(as_met).first(i + 1), way);
+  }
+}
+
 }  // namespace
 
 std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
@@ -126,6 +181,7 @@ std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run) {
       above = &item;
     }
   }
+  ContinueWays(run.way, result);
   FillGaps(result);
   return result;
 }

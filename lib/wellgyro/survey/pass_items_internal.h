@@ -10,7 +10,8 @@ namespace wellgyro {
 
 /// The passes of a run, each in the order of depth, with hole attitudes and the run's way between
 /// stations but without positions. A stop from which the tool goes out of the hole belongs to the
-/// pass that follows.
+/// pass that follows. A pass that goes on down from within the hole carries the stations of the
+/// run that led there before its own.
 std::vector<PassItems> SplitPasses(const Job& job, const DraftedRun& run);
 
 }  // namespace wellgyro
