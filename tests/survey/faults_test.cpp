@@ -12,6 +12,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/survey/sample_watch.h"
@@ -135,6 +136,43 @@ Check StuckGyroOf(double step, double frozen) {
     if (check.code.starts_with("gyro_stuck") || check.code.starts_with("gyro_dead")) return check;
   }
   return {};
+}
+
+/// Of a straight horizontal hole eastwards on the equator, in which the tool rolls at 1 rpm and the
+/// Earth's rate is across it and level. `swapped`: the gyros, in a hole that builds besides.
+Check AxesOf(bool swapped) {
+  Job job;
+  SampleWatch watch(job);
+  const double bend = swapped ? FromDegrees(3.0 / 60) : 0;  // [rad/s], 3 deg/30 m at 0.5 m/s
+  for (int k = 0; k < 3000; ++k) {
+    const double roll = kTwoPi * k / 60;
+    ImuSample sample;
+    sample.stamp.session = 1;
+    sample.stamp.seq = k;
+    sample.stamp.tool_time.ns = 1'000'000'000LL * k;
+    sample.stamp.period_ns = 1'000'000'000;
+    const Eigen::Vector2d up(std::cos(roll), std::sin(roll)), level(-up.y(), up.x());
+    const double lean = std::sin(bend * k);
+    sample.w_IT_T.head<2>() = (kEarthRate + bend) * level;
+    if (swapped) std::swap(sample.w_IT_T.x(), sample.w_IT_T.y());
+    sample.f_T << 9.81 * std::sqrt(1 - lean * lean) * up, 9.81 * lean;
+    AlongHoleBlock along;
+    along.Set(0, {.md = 0.5 * k, .speed = 0.5, .known = true});
+    watch.Push({&sample, 1}, along, 0);
+    if (swapped && k > 600) break;
+  }
+  for (const Check& check : watch.Checks(1, {})) {
+    if (check.code.starts_with("axes")) return check;
+  }
+  return {};
+}
+
+TEST(Faults, AHoleThatGoesEastDoesNotSwapTheAxes) {
+  EXPECT_EQ(AxesOf(false).verdict, Verdict::kNotDone) << AxesOf(false).limit_source;
+  const Check swapped = AxesOf(true);
+  EXPECT_EQ(swapped.code, "axes");
+  EXPECT_EQ(swapped.verdict, Verdict::kFail);
+  EXPECT_EQ(swapped.limit_source, "gyros x and y swapped");
 }
 
 TEST(Faults, ACoarseConverterIsNotStuck) {

@@ -33,9 +33,8 @@ constexpr double kStretch = 30;
 // Of a value, what dividing counts by a sample's length leaves of a repeat: lengths are differences
 // of times, exact to 1e-16 of hours.
 constexpr double kSameValue = 1e-9;
-// 1-sigma of what the products do not predict of f_z's change over a stretch: the string's starts
-// and stops, the Earth's rotation [m/s^2]. Two ends within kSteady, evenly: 0.016; the Earth turns
-// gravity by up to 7.3e-5 rad/s 30 s g = 0.021; together 0.027.
+// 1-sigma of what the products do not predict of f_z's change over a stretch, by the string's
+// starts and stops [m/s^2]. Two ends within kSteady, evenly: 0.016; twice that.
 constexpr double kForceLeft = 0.03;
 // Chi-square by which another pairing must explain more, 5 sigma ...
 constexpr double kBetter = 25;
@@ -212,10 +211,15 @@ void SampleWatch::WatchBend(const ImuSample& sample, const AlongHole& along, dou
   const double found = (sample.f_T.z() - stretch.begin_f_z) / kForceLeft;
   const std::array<double, kPairings> predicted = PredictionsOf(stretch.products / kForceLeft);
   ++stretches_;
-  // Bounded, so that a single bad sample at an end does not decide.
+  // The gyros have the Earth's rate too, which adds up to w_E t g to the products: 0.021 m/s^2 in
+  // 30 s. It is alike in all stretches of a hole that goes on eastwards, so that it is no variance
+  // but a bound, within which nothing is left. Squares are bounded, so that a single bad sample at
+  // an end does not decide.
+  const double earth = kEarthRate * stretch.seconds * kGravity / kForceLeft;
   std::array<double, kPairings> squares;
   for (std::size_t i = 0; i < kPairings; ++i) {
-    squares[i] = std::min(std::pow(found - predicted[i], 2), 100.0);
+    const double left = std::max(std::abs(found - predicted[i]) - earth, 0.0);
+    squares[i] = std::min(left * left, 100.0);
     squares_[i] += squares[i];
   }
   WatchSpells(stretch.md, stretch.seconds, squares);
