@@ -93,7 +93,7 @@ void Bridge::Lose(const Fault& fault) {
   line_.reset();
   reader_.Cut();
   next_try_ = MonotonicUs() + kAgainUs;
-  notices_.Say(Sentence(fault) + "; connecting again");
+  notices_.Say(SentenceOf(fault) + "; connecting again");
 }
 
 void Bridge::Read() {
@@ -112,7 +112,7 @@ int Bridge::Run() {
     if (!line_) Connect();
     const auto woken = bus_.Wait(line_ ? 0 : 100);
     if (!woken) {
-      console_.OnNotice(Sentence(woken.fault()));
+      console_.OnNotice(SentenceOf(woken.fault()));
       return kUnusable;
     }
     if (*woken == LiveBus::Woken::kStopped) break;

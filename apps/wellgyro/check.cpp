@@ -38,7 +38,7 @@ int Tell(const std::string& name, const std::string& what, const std::vector<Fau
          ExitCode if_any) {
   fmt::print("{}: {}{}\n", name, what, faults.empty() ? ", whole" : "");
   for (std::size_t i = 0; i < std::min(faults.size(), kFaultsShown); ++i) {
-    fmt::print("  {}\n", Sentence(faults[i]));
+    fmt::print("  {}\n", SentenceOf(faults[i]));
   }
   if (faults.size() > kFaultsShown) fmt::print("  and {} more\n", faults.size() - kFaultsShown);
   return faults.empty() ? kDone : if_any;
@@ -121,7 +121,7 @@ int CheckForeign(const std::string& name, const std::string& what) {
   const Result<SurveyTable> table = ReadSurvey(name);
   if (!table) {
     fmt::print("{}: {}, not one of wellgyro's nor a survey it reads\n  {}\n", name, what,
-               Sentence(table.fault()));
+               SentenceOf(table.fault()));
     if (table.fault().text.find(" --") != std::string::npos) {
       fmt::print("  options are those of wellgyro convert, which reads it with them\n");
     }

@@ -37,7 +37,7 @@ int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& recor
     const auto malformed = source.counts.find("malformed");
     if (malformed != source.counts.end() && malformed->second > 0 && !source.faults.empty()) {
       Complain(fmt::format("{} messages came and were refused; the first: {}", malformed->second,
-                           Sentence(source.faults.front())));
+                           SentenceOf(source.faults.front())));
     }
     return kUnusable;
   }

@@ -157,7 +157,7 @@ int Recording::Run() {
     if (fault_) break;
     const auto woken = bus_.Wait(200);
     if (!woken) {
-      console_.OnNotice(Sentence(woken.fault()));
+      console_.OnNotice(SentenceOf(woken.fault()));
       break;
     }
     if (*woken != LiveBus::Woken::kStopped) continue;

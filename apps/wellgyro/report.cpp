@@ -23,26 +23,25 @@ std::int64_t NowMs() {
 
 }  // namespace
 
-std::string Sentence(const Fault& fault) { return SentenceOf(fault); }
 std::string Printable(std::string_view text) { return wellgyro::Printable(text); }
 
 void Complain(std::string_view sentence) { fmt::print(stderr, "wellgyro: {}\n", sentence); }
 
-void Complain(const Fault& fault) { Complain(Sentence(fault)); }
+void Complain(const Fault& fault) { Complain(SentenceOf(fault)); }
 
 int Unusable(std::string_view sentence) {
   Complain(sentence);
   return kUnusable;
 }
 
-int Unusable(const Fault& fault) { return Unusable(Sentence(fault)); }
+int Unusable(const Fault& fault) { return Unusable(SentenceOf(fault)); }
 
 int Misused(std::string_view sentence) {
   Complain(sentence);
   return kUsage;
 }
 
-int Misused(const Fault& fault) { return Misused(Sentence(fault)); }
+int Misused(const Fault& fault) { return Misused(SentenceOf(fault)); }
 
 Progress::Progress(std::string_view doing, bool shown)
     : doing_(doing),

@@ -9,9 +9,6 @@
 
 namespace wellgyro::apps {
 
-/// "job.toml:12:3: sentence", as far as the place is known.
-std::string Sentence(const Fault& fault);
-
 /// What came from outside, with every byte that is not plain ASCII as \xNN.
 std::string Printable(std::string_view text);
 

@@ -24,20 +24,13 @@ namespace {
 using wellgyro::Fault;
 using wellgyro::Station;
 
-std::string Sentence(const Fault& fault) {
-  std::string place = fault.source;
-  if (fault.line > 0) place += fmt::format(":{}", fault.line);
-  if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
-  return place.empty() ? fault.text : place + ": " + fault.text;
-}
-
 // What waits to be polled, and how much was refused.
 class Mailbox : public wellgyro::Sink {
  public:
   void OnStation(const Station& station) override { waiting.push_back(station); }
   void OnFault(const Fault& fault) override {
     ++refused;
-    last = Sentence(fault);
+    last = SentenceOf(fault);
   }
 
   std::deque<Station> waiting;
@@ -175,7 +168,7 @@ int RefuseNull() noexcept {
 
 int Open(const wellgyro::Result<wellgyro::JobFile>& file, wellgyro_session** session) {
   if (!file) {
-    opening_error = Sentence(file.fault());
+    opening_error = SentenceOf(file.fault());
     return WELLGYRO_UNUSABLE;
   }
   *session = std::make_unique<wellgyro_session>(file->job).release();

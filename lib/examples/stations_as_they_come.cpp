@@ -17,8 +17,9 @@ struct Printer : wellgyro::Sink {
 int main(int argc, char** argv) {
   if (argc != 3) return std::fputs("usage: stations_as_they_come JOB.toml RUN.lcm\n", stderr), 1;
   const auto file = wellgyro::ReadJob(argv[1]);
+  if (!file) return std::fprintf(stderr, "%s\n", SentenceOf(file.fault()).c_str()), 2;
   auto log = wellgyro::LogReader::Open(argv[2]);
-  if (!file || !log) return std::fputs("the job or the log cannot be read\n", stderr), 2;
+  if (!log) return std::fprintf(stderr, "%s\n", SentenceOf(log.fault()).c_str()), 2;
   Printer printer;
   wellgyro::Surveyor surveyor(file->job, printer);
   wellgyro::SurveyorListener listener(surveyor, printer);

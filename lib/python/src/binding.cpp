@@ -1,6 +1,5 @@
 #include "binding.h"
 
-#include <fmt/core.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
@@ -10,13 +9,6 @@
 #include "wellgyro/io/words.h"
 
 namespace wellgyro::python {
-
-std::string Sentence(const Fault& fault) {
-  std::string place = fault.source;
-  if (fault.line > 0) place += fmt::format(":{}", fault.line);
-  if (fault.line > 0 && fault.column > 0) place += fmt::format(":{}", fault.column);
-  return place.empty() ? fault.text : place + ": " + fault.text;
-}
 
 nb::object Matrices(const std::vector<Eigen::Matrix3d>& matrices) {
   std::vector<double> values;

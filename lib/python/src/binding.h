@@ -29,12 +29,10 @@ struct FileError {
 /// What stands in columns of numbers where there is none.
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::string Sentence(const Fault& fault);
-
 /// The value, or FileError.
 template <class T>
 T Taken(Result<T> result) {
-  if (!result) throw FileError{Sentence(result.fault())};
+  if (!result) throw FileError{SentenceOf(result.fault())};
   return *std::move(result);
 }
 

@@ -36,7 +36,7 @@ class Notes : public Sink {
  public:
   void OnFault(const Fault& fault) override {
     ++count;
-    if (faults.size() < FaultBook::kKept) faults.push_back(Sentence(fault));
+    if (faults.size() < FaultBook::kKept) faults.push_back(SentenceOf(fault));
   }
   std::vector<std::string> faults;
   std::int64_t count = 0;
@@ -193,7 +193,7 @@ Outcome FromLog(const std::shared_ptr<const JobFile>& job, const std::string& pa
   Teller teller(std::move(callback));
   const nb::gil_scoped_release released;
   Result<LogReader> reader = LogReader::Open(path);
-  if (!reader) throw FileError{Sentence(reader.fault())};
+  if (!reader) throw FileError{SentenceOf(reader.fault())};
   Notes notes;
   Surveyor surveyor(job->job, notes);
   SurveyorListener listener(surveyor, notes);
@@ -208,7 +208,7 @@ Outcome FromLog(const std::shared_ptr<const JobFile>& job, const std::string& pa
   surveyor.Finish();
   teller.Say(1);
   Outcome outcome{job, {}, {}, notes.count};
-  for (const Fault& fault : reader->Faults()) outcome.faults.push_back(Sentence(fault));
+  for (const Fault& fault : reader->Faults()) outcome.faults.push_back(SentenceOf(fault));
   outcome.fault_count += static_cast<std::int64_t>(outcome.faults.size());
   outcome.faults.insert(outcome.faults.end(), notes.faults.begin(), notes.faults.end());
   for (const std::int32_t tool : surveyor.tools()) outcome.tools[tool] = surveyor.Current(tool);

@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include "wellgyro/base/export.h"
+
 /// @file
 /// A value, or what was wrong with foreign data that should have given it.
 namespace wellgyro {
@@ -34,6 +36,9 @@ struct Fault {
   int line = 0;              ///< from 1
   int column = 0;            ///< from 1
 };
+
+/// The fault for people, with its place as far as it is known: "job.toml:12:3: sentence".
+WELLGYRO_EXPORT std::string SentenceOf(const Fault& fault);
 
 /// A value, or the Fault that stands in its place; shaped as std::expected<T, Fault> of C++23.
 /// Asking for the value of a failed result is our own mistake and is asserted.

@@ -12,9 +12,6 @@
 
 namespace wellgyro {
 
-/// "job.toml:12:3: sentence", as far as the place is known.
-WELLGYRO_EXPORT std::string SentenceOf(const Fault& fault);
-
 /// What came from outside, with every byte that is not plain ASCII as \xNN.
 WELLGYRO_EXPORT std::string Printable(std::string_view text);
 

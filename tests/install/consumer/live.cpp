@@ -18,6 +18,6 @@ int main(int, char** argv) {
   };
   wellgyro::LiveObserver observer;
   auto session = wellgyro::LiveSession::Open(setup, observer);
-  if (!session) return std::puts(session.fault().text.c_str());
+  if (!session) return std::puts(SentenceOf(session.fault()).c_str());
   return (*session)->Run().usable() ? 0 : 1;
 }
