@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "support/hour.h"
+#include "support/small_hole.h"
 
 namespace wellgyro {
 namespace {
@@ -156,6 +157,35 @@ TEST_P(FlaggedRuns, AFaultFailsItsCheck) {
   }
   EXPECT_TRUE(there);
   EXPECT_TRUE(failed);
+}
+
+// From 100 m to 200 m the tool turns by more than a right angle a sample: the heading of what is
+// below has lost the roll there, and stations before it have not.
+TEST(FlaggedRuns, StationsAcrossARollTooFastForTheSamplesAreAliased) {
+  testing::SmallHole hole{.accel_noise_g = 2e-5};
+  Simulation simulation = SimulationOf(hole);
+  const double fast = 0.6 * kPi * hole.imu_hz;  // [rad/s]
+  simulation.run.steps = {RunStop{.seconds = 90}, RunMove{.to_md = 100},
+                          RunMove{.to_md = 200, .roll = {.rate = fast}}, RunMove{.to_md = 300},
+                          RunStop{.seconds = 90}};
+  CollectingSink sink;
+  const Survey survey = testing::SurveyOf(simulation, JobOf(hole), sink);
+  ASSERT_EQ(survey.unusable, "");
+  ASSERT_EQ(survey.runs.size(), 1u);
+  EXPECT_GT(survey.runs[0].samples_aliased, 100);
+  int across = 0, before = 0;
+  for (const Station& s : survey.passes) {
+    const bool aliased = Has(s.quality, Quality::kAliased);
+    if (s.md > 101 && s.md < 199) {
+      EXPECT_TRUE(aliased) << s.md;
+      ++across;
+    } else if (s.md < 99 || s.md > 221) {
+      EXPECT_FALSE(aliased) << s.md;
+      ++before;
+    }
+  }
+  EXPECT_GT(across, 3);
+  EXPECT_GT(before, 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(

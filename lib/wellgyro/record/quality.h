@@ -20,7 +20,7 @@ enum class Quality : std::uint32_t {
   kGap = 1u << 4,          ///< samples are missing
   kDepth = 1u << 5,        ///< depth missing, held or contradicted
   kTemperature = 1u << 6,  ///< outside the calibrated temperatures
-  kAliased = 1u << 7,      ///< rotation or vibration too fast for the sampling
+  kAliased = 1u << 7,      ///< rotation too fast for the sampling on the way since the last station
   kGravity = 1u << 8,      ///< |f| differs from gravity beyond its limit
   kEarthRate = 1u << 9,    ///< the rate at rest differs from the Earth's beyond its limit
   kClock = 1u << 10,       ///< the tie between the tool's clock and UTC is doubtful

@@ -38,7 +38,7 @@ RunKnot ForwardEstimate::KnotOf(const WaitingKnot& waiting, const Increment& inc
   RunKnot knot{.increment = increment, .utc = waiting.utc, .along = waiting.along};
   knot.temperature = waiting.temperature;
   knot.still = UsesFixes(job_.alignment) && waiting.still.value_or(false);
-  if (waiting.temperature_outside) knot.increment.quality |= Quality::kTemperature;
+  knot.increment.quality |= waiting.quality;
   knot.unseen = UnseenIn(knot);
   knot.var_unseen = unseen.VarOf(knot.unseen);
   unseen.Add(knot.unseen);

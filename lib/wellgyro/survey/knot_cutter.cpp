@@ -44,8 +44,13 @@ KnotCutter::KnotCutter(const Job& job, WaitingKnots& waiting, RunSummary& summar
     : job_(job), waiting_(waiting), summary_(summary), marks_(job), feed_(job) {}
 
 void KnotCutter::Heed(const SampleStamp& stamp) {
-  temperature_outside_ |= stamp.temperature_outside;
+  if (stamp.temperature_outside) quality_ |= Quality::kTemperature;
   end_unsynced_ = stamp.utc_unsynced;
+}
+
+void KnotCutter::CountAliased(std::int64_t samples) {
+  summary_.samples_aliased += samples;
+  if (samples > 0) quality_ |= Quality::kAliased;
 }
 
 bool KnotCutter::Follows(const ImuSample& sample) const {
@@ -63,7 +68,7 @@ std::optional<KnotCutter::End> KnotCutter::EndBefore(const ImuSample& next, UtcT
     return End{AtItsEnd(c.along, c.period_ns), c.pass, 1};
   }
   if (reach >= kWithoutGap) return End{along, pass, reach};
-  summary_.samples_aliased += TurnsFar(c.sample.f_T.head<2>(), next.f_T.head<2>());
+  CountAliased(TurnsFar(c.sample.f_T.head<2>(), next.f_T.head<2>()));
   c.utc_end = utc;
   return End{along, pass, 1};
 }
@@ -201,7 +206,7 @@ void KnotCutter::MakeKnot(ToolTime time, double fraction, const End& end) {
   knot.end = time;
   knot.utc = c.utc + Duration::Seconds(fraction * (c.utc_end - c.utc).seconds());
   knot.along = Between(c.along, end.along, fraction / end.reach);
-  knot.temperature_outside = std::exchange(temperature_outside_, false);
+  knot.quality = std::exchange(quality_, Quality::kGood);
   knot.temperature = c.sample.stamp.temperature;
   waiting_.push_back(std::move(knot));
   last_knot_ = time;
@@ -255,7 +260,7 @@ void KnotCutter::Append(const LocatedBlock& block, std::size_t at, std::size_t c
   const SampleBlock samples = block.samples.Part(at, count);
   const std::size_t last = at + count - 1;
   Current& c = *current_;
-  summary_.samples_aliased += FarTurns(c.sample.f_T.head<2>(), samples.axes);
+  CountAliased(FarTurns(c.sample.f_T.head<2>(), samples.axes));
   const auto rests = [&block](std::size_t begin, std::size_t n) {
     const auto speed =
         block.middle.speed.segment(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(n));

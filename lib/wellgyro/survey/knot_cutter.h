@@ -9,6 +9,7 @@
 #include "wellgyro/depth/passes.h"
 #include "wellgyro/record/along_hole.h"
 #include "wellgyro/record/increment.h"
+#include "wellgyro/record/quality.h"
 #include "wellgyro/record/sample.h"
 #include "wellgyro/survey/draft.h"
 #include "wellgyro/survey/increment_feed.h"
@@ -97,6 +98,8 @@ class KnotCutter {
     bool external = false;
   };
 
+  /// Counts samples between which the roll is ambiguous (TurnsFar), and flags their knot.
+  void CountAliased(std::int64_t samples);
   /// Increments that are ready, to their knots.
   void Give();
   bool PlaceTargets(double md_next, double reach);
@@ -114,7 +117,7 @@ class KnotCutter {
   std::optional<Current> current_;         ///< none: before the first sample, and behind a Flush
   std::optional<SampleStamp> last_taken_;  ///< what the next one must follow
   std::optional<ToolTime> last_knot_;      ///< where the next one begins
-  bool temperature_outside_ = false;       ///< since the last knot
+  Quality quality_ = Quality::kGood;       ///< of the samples since the last knot
   bool end_unsynced_ = false;  ///< the sample behind the one being summed doubts its UTC
 };
 

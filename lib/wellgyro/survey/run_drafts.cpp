@@ -9,7 +9,7 @@
 namespace wellgyro {
 namespace {
 
-constexpr Quality kUnseen = Quality::kGap | Quality::kSaturated;
+constexpr Quality kUnseen = Quality::kGap | Quality::kSaturated | Quality::kAliased;
 
 /// What the Earth measured at the stop, and what it is.
 void TakeReferences(const NorthFix& fix, Station& station) {
@@ -74,7 +74,7 @@ void RunDrafts::TellAhead(std::span<const Increment> increments, ForwardEstimate
     WaitingKnot& knot = waiting[i];
     const Increment* next = i + 1 < increments.size() ? &increments[i + 1] : nullptr;
     if (!ahead.Step(knot, increments[i], next)) return;
-    unseen |= increments[i].quality & kUnseen;
+    unseen |= ahead.last().increment.quality & kUnseen;
     if (!knot.draft) continue;
     StationState state = ahead.AddStation();
     if (!knot.told) {

@@ -20,8 +20,8 @@ namespace wellgyro {
 
 /// The stations of a run as drafts. One is told at once, *ahead*, while its knot still waits, by
 /// the increments that the samples there are give; its state follows when the knot is known. A
-/// station carries what was not seen (gaps, saturation) on the whole way since the one listed
-/// before it: its azimuth hangs on all of that.
+/// station carries what was not seen (gaps, saturation, aliasing) on the whole way since the one
+/// listed before it: its azimuth hangs on all of that.
 class RunDrafts {
  public:
   /// All drafts, and which of them are to be told.

@@ -8,6 +8,7 @@
 #include "wellgyro/base/time.h"
 #include "wellgyro/record/along_hole.h"
 #include "wellgyro/record/increment.h"
+#include "wellgyro/record/quality.h"
 #include "wellgyro/survey/draft.h"
 
 namespace wellgyro {
@@ -25,7 +26,7 @@ struct WaitingKnot {
   bool external = false;             ///< the job's azimuth holds here
   std::optional<bool> still;         ///< once it is decided
   std::optional<std::size_t> told;   ///< the draft's number, where it is already among the drafts
-  bool temperature_outside = false;  ///< of what the tool is calibrated for
+  Quality quality = Quality::kGood;  ///< kTemperature and kAliased, of any sample since `begin`
   float temperature = 0;             ///< [degC]
 };
 
