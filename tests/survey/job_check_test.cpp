@@ -102,8 +102,27 @@ TEST(JobCheck, EventsAreHeldToWhatPushedOnesAre) {
 TEST(JobCheck, APushedEventsSigmaIsNoneBelowZero) {
   EXPECT_EQ(WhyImplausible(Event{.sigma_m = 5, .sigma_rad = 5}), "");
   EXPECT_EQ(WhyImplausible(Event{.sigma_m = -5}),
-            "an event has sigma_m: -5 must be at least 0, and was left out");
+            "an event was left out: sigma_m: -5 must be at least 0");
   EXPECT_THAT(WhyImplausible(Event{.sigma_rad = -5}), HasSubstr("sigma_rad: -5"));
+}
+
+TEST(JobCheck, AnEventOfADepthOrADirectionHasOne) {
+  struct Needed {
+    Event::Kind kind;
+    std::string key;
+  };
+  for (const Needed& needed :
+       {Needed{Event::Kind::kDepthRezero, "value_m"}, Needed{Event::Kind::kDepthTie, "value_m"},
+        Needed{Event::Kind::kForesight, "value_rad"}}) {
+    const auto& [kind, key] = needed;
+    EXPECT_THAT(WhyImplausible(Event{.kind = kind}), HasSubstr(key + ": is missing"));
+    EXPECT_EQ(WhyImplausible(Event{.kind = kind, .has_value = true}), "");
+    EXPECT_THAT(WhyNot([&](Job& job) { job.events.emplace_back().kind = needed.kind; }),
+                HasSubstr("events[0]." + key));
+  }
+  for (const auto kind : {Event::Kind::kDepthZero, Event::Kind::kReturnToZero}) {
+    EXPECT_EQ(WhyImplausible(Event{.kind = kind}), "") << "0 m is meant";
+  }
 }
 
 TEST(JobCheck, AnEnumerationHoldsOneOfItsValues) {

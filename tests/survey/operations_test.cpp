@@ -103,6 +103,7 @@ class Operations : public ::testing::Test {
     Event foresight = EventAt(Later(second.streams.begin_utc, end - 5), Event::Kind::kForesight);
     foresight.value_rad = std::atan2(out.R_LT(1, 0), out.R_LT(0, 0)) + FromDegrees(2);
     foresight.sigma_rad = FromDegrees(0.05);
+    foresight.has_value = true;
     surveyor.Push(foresight);
     Event back = EventAt(Later(second.streams.begin_utc, end - 5), Event::Kind::kReturnToZero);
     back.has_value = true;

@@ -129,6 +129,28 @@ TEST(RunLimits, ReturnToZeroAndForesightCountAfterTheLastSample) {
   EXPECT_EQ(seen->verdict, Verdict::kFail);
 }
 
+TEST(RunLimits, AnEventWithoutItsValueIsAFaultAndNoCheck) {
+  const Simulation simulation = testing::Slant();
+  CollectingSink sink;
+  Surveyor surveyor(testing::SlantJob(), sink);
+  for (const auto kind :
+       {Event::Kind::kForesight, Event::Kind::kDepthTie, Event::Kind::kDepthRezero}) {
+    Event event;
+    event.kind = kind;
+    event.utc = simulation.streams.begin_utc + Duration::Seconds(60);
+    surveyor.Push(event);
+  }
+  testing::Play(simulation, surveyor);
+  surveyor.Finish();
+  const Survey survey = surveyor.Current(0);
+  ASSERT_EQ(sink.faults.size(), 3u);
+  EXPECT_NE(sink.faults[0].text.find("value_rad: is missing"), std::string::npos);
+  const Check* foresight = testing::Find(survey, "foresight");
+  ASSERT_NE(foresight, nullptr);
+  EXPECT_EQ(foresight->verdict, Verdict::kNotDone);
+  EXPECT_NE(survey.verdict.verdict, Verdict::kFail);
+}
+
 TEST(RunLimits, AnExternalAzimuthThatTheStopsContradictIsToldAtEveryStation) {
   const Simulation simulation = testing::Slant();
   for (const double wrong : {0.0, 8.0}) {

@@ -89,6 +89,8 @@ struct Event {
   std::int32_t run = 0;  ///< 0: the run at that time
   Kind kind = Kind::kRemark;
   std::int32_t event_id = 0;  ///< the same event sent again has the same id; 0: none
+  /// Whether there is a value of the event's kind. A depth_rezero, a depth_tie and a foresight
+  /// without one are refused; a depth_zero and a return_to_zero without one mean 0 m.
   bool has_value = false;
   double value_m = 0;    ///< of depth events [m]
   double sigma_m = 0;    ///< [m]

@@ -63,7 +63,24 @@ class TableRules {
   std::optional<KeyComplaint> first_;
 };
 
+/// The value that an event of this kind says nothing without, and the kind's name; empty: none.
+std::pair<std::string_view, std::string_view> NeededBy(Event::Kind kind) {
+  switch (kind) {
+    case Event::Kind::kDepthRezero:
+      return {"value_m", "depth_rezero"};
+    case Event::Kind::kDepthTie:
+      return {"value_m", "depth_tie"};
+    case Event::Kind::kForesight:
+      return {"value_rad", "foresight"};
+    default:
+      return {};
+  }
+}
+
 void CheckValues(const Event& event, TableRules& rules) {
+  if (const auto [key, kind] = NeededBy(event.kind); !key.empty() && !event.has_value) {
+    rules.Refuse(key, fmt::format("is missing, which {} needs", kind));
+  }
   rules.Number("value_m", event.value_m);
   rules.Number("sigma_m", event.sigma_m);
   rules.Number("value_rad", event.value_rad);

@@ -34,7 +34,7 @@ class Complaint {
 };
 
 std::string LeftOut(std::string_view what, const std::string& odd) {
-  return odd.empty() ? odd : fmt::format("{} has {}, and was left out", what, odd);
+  return odd.empty() ? odd : fmt::format("{} was left out: {}", what, odd);
 }
 
 }  // namespace

@@ -171,6 +171,28 @@ TEST(ReadJob, KeysThatContradictEachOtherAreRefused) {
       HasSubstr("stands alone"));
 }
 
+TEST(ReadJob, AnEventWithoutTheValueOfItsKindIsAnErrorWithItsLine) {
+  struct Without {
+    std::string event, key;
+  };
+  for (const auto& [event, key] : {Without{"event = 'foresight'", "value_rad"},
+                                   Without{"event = 'foresight'\nvalue_m = 1", "value_rad"},
+                                   Without{"event = 'depth_rezero'", "value_m"},
+                                   Without{"event = 'depth_tie'\nvalue_rad = 1", "value_m"}}) {
+    const auto file =
+        ParsedJob("format = \"wellgyro.job/1\"\nwell.latitude_deg = 60\n[[event]]\nutime_us = 1\n" +
+                  event + "\n");
+    ASSERT_FALSE(file) << event;
+    EXPECT_EQ(file.fault().line, 3) << event;
+    EXPECT_THAT(file.fault().text, HasSubstr(key + ": is missing")) << event;
+  }
+  for (const char* event : {"depth_zero", "return_to_zero", "accept", "run_end", "remark"}) {
+    EXPECT_EQ(FaultOf(std::string("well.latitude_deg = 60\nevent = [{utime_us = 1, event = '") +
+                      event + "'}]"),
+              "accepted");
+  }
+}
+
 TEST(ReadJob, WhatIsNotTomlIsRefusedWithItsPlace) {
   const auto file = ParsedJob("format = \"wellgyro.job/1\"\n[well\n");
   ASSERT_FALSE(file);

@@ -253,7 +253,7 @@ Event ReadEvent(TomlTable table) {
   event.sigma_m = FindListed(table, "event", "sigma_m").value_or(event.sigma_m);
   event.value_rad = FindListed(table, "event", "value_rad").value_or(event.value_rad);
   event.sigma_rad = FindListed(table, "event", "sigma_rad").value_or(event.sigma_rad);
-  event.has_value = table.Has("value_m") || table.Has("value_rad");
+  event.has_value = table.Has(event.kind == Event::Kind::kForesight ? "value_rad" : "value_m");
   table.Read("what", event.what);
   table.Read("who", event.who);
   table.Read("text", event.text);
