@@ -158,6 +158,36 @@ TEST(ManyTools, MoreThanAreAllowedAreFaultsAndNoMemory) {
   EXPECT_EQ(sink.faults.size(), 300 - Surveyor::kToolsMax);
 }
 
+TEST(ManyTools, OneTooManyLeavesTheOthersOfItsBatch) {
+  // Each of kToolsMax tools has been heard for long: none of them gives way.
+  constexpr std::int32_t kLong = 1000, kMost = Surveyor::kToolsMax;
+  CollectingSink sink;
+  Surveyor surveyor(SlantJob(), sink);
+  const auto sample_of = [](std::int32_t tool, std::int64_t number) {
+    ImuSample sample;
+    sample.stamp.tool = tool;
+    sample.stamp.seq = number;
+    sample.stamp.period_ns = 100'000'000;
+    sample.stamp.tool_time.ns = number * sample.stamp.period_ns;
+    sample.stamp.utc.ns = sample.stamp.tool_time.ns;
+    sample.f_T.z() = -9.8;
+    return sample;
+  };
+  std::vector<ImuSample> batch;
+  for (std::int32_t tool = 0; tool < kMost; ++tool) {
+    batch.clear();
+    for (std::int64_t i = 0; i < kLong; ++i) batch.push_back(sample_of(tool, i));
+    surveyor.Push(std::span<const ImuSample>(batch));
+  }
+  ASSERT_TRUE(sink.faults.empty());
+  const std::int64_t before = surveyor.tally().received;
+  batch = {sample_of(0, kLong), sample_of(kMost, 0), sample_of(1, kLong), sample_of(kMost, 1),
+           sample_of(2, kLong)};
+  surveyor.Push(std::span<const ImuSample>(batch));
+  EXPECT_EQ(surveyor.tally().received, before + 3);
+  EXPECT_EQ(sink.faults.size(), 1u);
+}
+
 TEST(ManyTools, FinishInTheMiddleEndsAllAndWhatFollowsIsNotUsed) {
   const std::vector<SimulatedStep> steps = StepsOf(Slant(10));
   CollectingSink sink;

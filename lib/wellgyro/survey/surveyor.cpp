@@ -246,13 +246,17 @@ Surveyor& Surveyor::operator=(Surveyor&&) noexcept = default;
 
 void Surveyor::Push(std::span<const ImuSample> batch) {
   if (!rooms_->Open()) return;
+  std::optional<std::int32_t> refused;  // told once a batch, however the tools' samples interleave
   for (auto at = batch.begin(); at != batch.end() && !rooms_->finished;) {
-    ToolSurvey* tool = rooms_->Tool(at->stamp.tool);
-    if (tool == nullptr) return;
-    const auto end = std::find_if(at, batch.end(), [tool](const ImuSample& sample) {
-      return sample.stamp.tool != tool->tool();
-    });
-    rooms_->Use(*tool, std::span(at, end));
+    const std::int32_t number = at->stamp.tool;
+    const auto end = std::find_if(
+        at, batch.end(), [number](const ImuSample& sample) { return sample.stamp.tool != number; });
+    ToolSurvey* tool = number == refused ? nullptr : rooms_->Tool(number);
+    if (tool != nullptr) {
+      rooms_->Use(*tool, std::span(at, end));
+    } else {
+      refused = number;
+    }
     at = end;
   }
 }
