@@ -50,16 +50,29 @@ class Tutorial(unittest.TestCase):
         self.assertGreater(sizes["result/survey.csv"], 30)
         self.assertGreater(sizes["first.las"], sizes["result/survey.csv"])
 
-    def test_the_first_job_of_the_readme_is_one(self):
-        with open(os.path.join(TOP, "README.md"), encoding="utf-8") as file:
-            job = re.search(r"^```toml\n(.*?)^```$", file.read(), re.M | re.S).group(1)
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "job.toml")
-            with open(path, "w", encoding="utf-8") as out:
+    def test_first_survey_of_a_tool_without_utc(self):
+        job = next(text for kind, text in Blocks("first-survey.md") if kind == "toml")
+        with tempfile.TemporaryDirectory() as folder, Begun(1) as demo:
+            def Do(*words):
+                done = subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True,
+                                      timeout=300, check=False)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+            def Path(name):
+                return os.path.join(folder, name)
+
+            with open(Path("job.toml"), "w", encoding="utf-8") as out:
                 out.write(job)
-            done = subprocess.run([PROGRAM, "check", path], capture_output=True, text=True,
-                                  check=False)
-            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            Do("convert", os.path.join(demo, "run.lcm"), "tool.csv")
+            with open(Path("tool.csv"), encoding="utf-8", newline="") as file:
+                rows = [line.split(",") for line in file]
+            utc = rows[0].index("UTC[us]")
+            with open(Path("memory.csv"), "w", encoding="utf-8", newline="") as out:
+                out.writelines(",".join(row[:utc] + row[utc + 1:]) for row in rows)
+            Do("survey", "--job", "job.toml", "--from", "memory.csv", "--from", "tool.depth.csv",
+               "--out", "result")
+            with open(Path("result/run.toml"), encoding="utf-8") as file:
+                self.assertIn("[clock_by_stops]", file.read())
 
 
 if __name__ == "__main__":

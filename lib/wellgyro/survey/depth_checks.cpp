@@ -61,22 +61,26 @@ void AddJump(const DepthMotion::Found& found, std::int32_t run, std::vector<Chec
   checks.back().md = found.step_md;
 }
 
-void AddLag(const DepthMotion::Found& found, std::int32_t run, std::vector<Check>& checks) {
+void AddLag(const DepthAgainstMotion& felt, std::int32_t run, std::vector<Check>& checks) {
+  const DepthMotion::Found& found = felt.found;
   constexpr double kLag = 0.1;      // less is no matter [s]: 0.1 m at 1 m/s
   constexpr double kToldLag = 0.1;  // sigma of a lag that says something [s]: kLag at most
   if (!(found.sigma_lag > 0 && found.sigma_lag < kToldLag)) {
     checks.push_back(NotDone("depth_lag", run, "no starts and stops that tell it"));
     return;
   }
-  checks.push_back(CompareWith("depth_lag", run, {found.lag, found.sigma_lag},
-                               kLag + 5 * found.sigma_lag, 1, "s",
-                               "0.1 s and 5 sigma of starts and stops"));
+  // An error of the clocks' tie is the same at every start and stop: it is a lag of the marks.
+  const double sigma = std::hypot(found.sigma_lag, felt.sigma_utc);
+  checks.push_back(CompareWith("depth_lag", run, {found.lag, sigma}, kLag + 5 * sigma, 1, "s",
+                               felt.sigma_utc > 0
+                                   ? "0.1 s and 5 sigma of starts, stops and the tie of the clocks"
+                                   : "0.1 s and 5 sigma of starts and stops"));
 }
 
 }  // namespace
 
-void AddDepthChecks(const DepthMotion::Found& found, std::optional<double> lean, std::int32_t run,
-                    std::vector<Check>& checks) {
+void AddDepthChecks(const DepthAgainstMotion& felt, std::int32_t run, std::vector<Check>& checks) {
+  const DepthMotion::Found& found = felt.found;
   const auto not_done = [&](std::initializer_list<const char*> codes, const char* why) {
     for (const char* code : codes) checks.push_back(NotDone(code, run, why));
   };
@@ -85,7 +89,8 @@ void AddDepthChecks(const DepthMotion::Found& found, std::optional<double> lean,
              "first axes and accelerometers must be right");
     return;
   }
-  const std::optional<Check> wrong = TellsScale(found) ? WrongUnit(found, lean, run) : std::nullopt;
+  const std::optional<Check> wrong =
+      TellsScale(found) ? WrongUnit(found, felt.lean, run) : std::nullopt;
   if (wrong) {
     checks.push_back(*wrong);
     not_done({"depth_jump", "depth_lag"}, "first depth must be in its unit");
@@ -105,7 +110,7 @@ void AddDepthChecks(const DepthMotion::Found& found, std::optional<double> lean,
   } else {
     not_done({"depth_jump"}, "too few marks along samples");
   }
-  AddLag(found, run, checks);
+  AddLag(felt, run, checks);
 }
 
 }  // namespace wellgyro

@@ -13,6 +13,7 @@ struct StringRecords {
   const MarksRefused& refused;
   CableMarks& marks;
   RunBook& book;
+  const double& sigma_utc;  ///< see Surveyor::TieClock [s]
 };
 
 }  // namespace wellgyro

@@ -237,7 +237,8 @@ std::vector<RunSummary> SurveyMaker::Summaries() const {
     summary.misrun = string_.book.misrun(summary.run);
     summary.sample_checks = run.watch->Checks(summary.run, summary.fixes);
     if (summary.samples > 0) {
-      AddDepthChecks(run.motion->found(), run.watch->lean(), summary.run, summary.sample_checks);
+      AddDepthChecks({run.motion->found(), run.watch->lean(), string_.sigma_utc}, summary.run,
+                     summary.sample_checks);
     }
     summary.remark = string_.book.remark(summary.run);
     const SampleQueue::Counts& counts = parts_.counts;

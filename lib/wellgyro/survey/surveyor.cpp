@@ -1,10 +1,12 @@
 #include "wellgyro/survey/surveyor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,6 +95,7 @@ struct Surveyor::Rooms {
   std::vector<ImuSample> calibrated;                     ///< scratch
   std::int64_t forgotten_at = 0;                         ///< in kForgetEvery
   bool finished = false, flushed = false;
+  double sigma_utc = 0;         ///< see TieClock [s]
   std::int64_t most_heard = 0;  ///< samples of the tool that has most: its clock is the string's
 
   /// Those of numbers that no tool has, as of damaged messages, are forgotten again.
@@ -108,10 +111,11 @@ struct Surveyor::Rooms {
     const auto found = tools.find(number);
     if (found != tools.end()) return &found->second;
     if (tools.size() >= kToolsMax && !GiveWay(number)) return nullptr;
-    ToolSurvey& tool = tools
-                           .try_emplace(number, job, number,
-                                        StringRecords{track, refused, marks, book}, sink, adjuster)
-                           .first->second;
+    ToolSurvey& tool =
+        tools
+            .try_emplace(number, job, number, StringRecords{track, refused, marks, book, sigma_utc},
+                         sink, adjuster)
+            .first->second;
     const auto info = infos.find(number);
     if (info != infos.end()) tool.Push(info->second);
     for (const Operation& operation : operations) tool.Push(operation);
@@ -332,6 +336,13 @@ void Surveyor::Push(const Command& command) {
 
 void Surveyor::Push(const Event& event) {
   if (rooms_->Admits(event)) rooms_->Take(event);
+}
+
+void Surveyor::TieClock(double sigma_utc) {
+  if (!(sigma_utc >= 0 && std::isfinite(sigma_utc))) {
+    throw std::invalid_argument(fmt::format("sigma_utc = {} must be at least 0", sigma_utc));
+  }
+  rooms_->sigma_utc = sigma_utc;
 }
 
 void Surveyor::Adjust() {

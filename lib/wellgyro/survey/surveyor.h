@@ -93,6 +93,11 @@ class WELLGYRO_EXPORT Surveyor {
   void Push(const Command& command);
   void Push(const Event& event);
 
+  /// 1-sigma of the difference of the samples' UTC from that of the depth marks [s]: one error of
+  /// the whole run, as of clocks joined by stops; 0 where it is not called. `depth_lag` allows for
+  /// it. Throws std::invalid_argument where it is negative or non-finite.
+  void TieClock(double sigma_utc);
+
   /// Sends revisions from all that is known so far; changes nothing that follows.
   void Adjust();
   /// Works off what still waits for its depth, as Finish does, and adjusts nothing: what is known

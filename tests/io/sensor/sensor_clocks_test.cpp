@@ -116,6 +116,31 @@ TEST(SensorFiles, DepthOnAClockThatNoSampleHasIsRefused) {
   EXPECT_FALSE(Do(scratch, {"utc.csv", "rest.csv"}, StandsJob()).report);
 }
 
+// A logger that stamps marks each second notes a stop's ends to half of that, and the tie by stops is
+// off by more than 5 sigmas of what starts and stops tell of the lag: the tie's sigma is in the check.
+TEST(SensorFiles, ALagThatTheTieOfTheClocksAllowsFailsNothing) {
+  const Scratch scratch;
+  const StandsTables tables = TablesOf(Stands(), false);
+  scratch.Write("tool.csv", tables.samples);
+  scratch.Write("depth.csv", tables.depth);
+  const SurveyedTables done = Do(scratch, {"tool.csv", "depth.csv"}, StandsJob());
+  ASSERT_TRUE(done.report) << done.report.fault().text;
+  ASSERT_TRUE(done.report->clock);
+  const double sigma = done.report->clock->Sigma(done.report->clock->tool);
+  const auto lag = std::ranges::find(done.survey.checks, "depth_lag", &Check::code);
+  ASSERT_NE(lag, done.survey.checks.end());
+  ASSERT_TRUE(lag->value && lag->sigma && lag->limit);
+  EXPECT_GE(*lag->sigma, sigma);
+  EXPECT_GE(*lag->limit, 5 * sigma);
+  EXPECT_NE(lag->verdict, Verdict::kFail);
+  // With both clocks in the samples there is no tie by stops to be unsure of.
+  scratch.Write("both.csv", TablesOf(Stands(), true).samples);
+  const SurveyedTables both = Do(scratch, {"both.csv", "depth.csv"}, StandsJob());
+  const auto sharp = std::ranges::find(both.survey.checks, "depth_lag", &Check::code);
+  ASSERT_NE(sharp, both.survey.checks.end());
+  EXPECT_LT(sharp->sigma.value_or(1), 0.1 * sigma);
+}
+
 TEST(SensorFiles, AClockThatIsSetWrongIsTold) {
   const Scratch scratch;
   const StandsTables tables = TablesOf(Stands(), true, 60);

@@ -261,7 +261,11 @@ class Joiner {
       return why;
     }
     report_.clock = *match;
-    if (has_utc_) CompareStamps(*match, *first, *last);
+    if (has_utc_) {
+      CompareStamps(*match, *first, *last);
+    } else {
+      surveyor_.TieClock(std::max(match->Sigma(first->tool_time), match->Sigma(last->tool_time)));
+    }
     return std::nullopt;
   }
 
