@@ -4,12 +4,10 @@ import filecmp
 import math
 import os
 import random
-import re
-import shlex
 import shutil
 import unittest
 
-from harness import DEMO, RESULT, TOP, Job, Move, ProgramTest, Run, Simulation, Stop
+from harness import RESULT, Job, Move, ProgramTest, Run, Simulation, Stop
 
 # Of seed 3 the way down to 40 m, alone, is 3.8 sigmas off the north above it.
 SIMULATION = Simulation(Stop(120) + Move(300) + Stop(20),
@@ -334,49 +332,6 @@ class Program(ProgramTest):
             done = Run(command, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn(f"wellgyro {command}", done.stdout, "an example")
-
-    def test_the_commands_of_the_readme_run_as_they_stand(self):
-        folder = self.Path("readme")
-        os.mkdir(folder)
-        os.symlink(os.path.dirname(DEMO), os.path.join(folder, "data"))
-        self.Write("readme/raw.txt", "0 0 0\n100 1 20\n")
-        self.Log("readme/still", Simulation(Stop(600), "imu_hz = 20.0\n"))
-        text = self.Read(TOP, "README.md").replace("\\\n", "")
-        job = self.Write("readme/job.toml", re.search(r"(?s)```toml\n(.*?)```", text).group(1))
-        latitude = self.Toml(job)["well"]["latitude_deg"]
-        # What the job leaves out is not zero: accelerometers without noise would count as stuck.
-        self.Log("readme/tool", SIMULATION.replace("61.0", str(latitude)).replace(
-            "[tool]\n", "[tool]\naccel_noise_mps2_per_sqrt_hz = 2e-4\n"))
-        policy = re.search(r'(?s)```toml\n(format = "wellgyro.clearance.*?)```', text)
-        self.OtherWells("readme", policy.group(1))
-        ran = set()
-        commands = [match.group(1) or match.group(2) for match in
-                    re.finditer(r"(?m)^(wellgyro .*)$|`(wellgyro survey --job job[^`]+)`", text)]
-        for command in commands:
-            arguments = shlex.split(command)[1:]
-            if "udpm" in command or "memory.csv" in command:
-                continue
-            done = Run(*arguments, cwd=folder)
-            self.assertEqual(done.returncode, 0, command + "\n" + done.stderr)
-            self.assertNotIn(".cc:", done.stderr, "a line of the solver's log")
-            ran.add(arguments[0])
-        self.assertEqual(ran, {"survey", "convert", "allan", "uncertainty", "calibrate",
-                               "clearance", "compare", "merge", "report"})
-
-    def OtherWells(self, folder, policy):
-        self.Write(folder + "/clearance.toml", policy)
-        plan = re.search(r'(?s)```toml\n(format = "wellgyro.merge.*?)```', self.Read(TOP, "README.md"))
-        self.Write(folder + "/plan.toml", plan.group(1))
-        rows = "".join(f"{md},{min(md / 20, 60)},{40 + md / 100}\n" for md in range(0, 2001, 30))
-        for name, end in (("gyro", 40), ("mwd", 70)):
-            self.Write(f"{folder}/{name}.csv", "MD[m],INC[deg],AZI_TRUE[deg]\n"
-                       + "".join(rows.splitlines(keepends=True)[:end]))
-        head = "MD[m],INC[deg],AZI_TRUE[deg],TVD[m],N[m],E[m]\n"
-        for name, north in (("plan", 0), ("a", 40), ("b", 900)):
-            rows = "".join(f"{md},0,0,{md},{north},0\n" for md in range(0, 2500, 100))
-            self.Write(f"{folder}/{name}.csv", head + rows)
-        self.Write(folder + "/sidetrack.csv",
-                   head + "900,0,0,900,0,0\n930,3,90,,,\n960,6,90,,,\n1200,30,90,,,\n")
 
 
 if __name__ == "__main__":
