@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "wellgyro/earth/grid.h"
 #include "wellgyro/io/exchange/survey_csv.h"
@@ -22,6 +22,7 @@
 namespace {
 
 using wellgyro::Fault;
+using wellgyro::Quality;
 using wellgyro::Station;
 
 // What waits to be polled, and how much was refused.
@@ -115,7 +116,44 @@ wellgyro_station StationOf(const Station& from) {
   return to;
 }
 
+wellgyro_directed_station DirectedOf(const Station& from) {
+  wellgyro_directed_station to{};
+  to.station = StationOf(from);
+  for (int i = 0; i < 3; ++i) to.tangent[i] = from.tangent_L[i];
+  Copy(from.cov_tangent_L, to.cov_tangent_rad2);
+  return to;
+}
+
+constexpr bool Is(Quality quality, std::uint32_t bit) {
+  return static_cast<std::uint32_t>(quality) == bit;
+}
+static_assert(Is(Quality::kGood, WELLGYRO_QUALITY_GOOD) &&
+              Is(Quality::kMoved, WELLGYRO_QUALITY_MOVED) &&
+              Is(Quality::kMirror, WELLGYRO_QUALITY_MIRROR) &&
+              Is(Quality::kVertical, WELLGYRO_QUALITY_VERTICAL) &&
+              Is(Quality::kSaturated, WELLGYRO_QUALITY_SATURATED) &&
+              Is(Quality::kGap, WELLGYRO_QUALITY_GAP) &&
+              Is(Quality::kDepth, WELLGYRO_QUALITY_DEPTH) &&
+              Is(Quality::kTemperature, WELLGYRO_QUALITY_TEMPERATURE) &&
+              Is(Quality::kAliased, WELLGYRO_QUALITY_ALIASED) &&
+              Is(Quality::kGravity, WELLGYRO_QUALITY_GRAVITY) &&
+              Is(Quality::kEarthRate, WELLGYRO_QUALITY_EARTH_RATE) &&
+              Is(Quality::kClock, WELLGYRO_QUALITY_CLOCK) &&
+              Is(Quality::kUnfit, WELLGYRO_QUALITY_UNFIT));
+
+std::int32_t NumberOf(wellgyro::Verdict verdict) {
+  switch (verdict) {
+    case wellgyro::Verdict::kPass:
+      return WELLGYRO_VERDICT_PASS;
+    case wellgyro::Verdict::kWarn:
+      return WELLGYRO_VERDICT_WARN;
+    default:
+      return WELLGYRO_VERDICT_FAIL;
+  }
+}
+
 thread_local std::string opening_error;
+constexpr const char* kDoesNotFit = "the text does not fit";
 
 }  // namespace
 
@@ -190,6 +228,30 @@ int PushInto(wellgyro_session* session, const void* data, std::size_t count,
   });
 }
 
+// Takes what waits as structs that `made` makes of it.
+template <class Given, class Make>
+int PollInto(wellgyro_session* session, Given* stations, std::size_t capacity, std::size_t* count,
+             const Make& made) noexcept {
+  if (count) *count = 0;
+  if (!session) return RefuseNull();
+  return Guard(session->error, [&] {
+    if (!count || (!stations && capacity > 0)) return Refuse(session->error, "null stations");
+    std::deque<Station>& waiting = session->mailbox.waiting;
+    for (; *count < capacity && !waiting.empty(); waiting.pop_front()) {
+      stations[(*count)++] = made(waiting.front());
+    }
+    return int{WELLGYRO_OK};
+  });
+}
+
+// `from` with its ending zero into `text`; false: it does not fit.
+bool Fits(const std::string& from, char* text, std::size_t capacity, std::size_t& size) {
+  size = from.size() + 1;
+  if (capacity < size) return false;
+  std::memcpy(text, from.c_str(), size);
+  return true;
+}
+
 }  // namespace
 
 extern "C" {
@@ -236,16 +298,12 @@ int wellgyro_push_depth(wellgyro_session* session, const wellgyro_depth* marks, 
 
 int wellgyro_poll(wellgyro_session* session, wellgyro_station* stations, size_t capacity,
                   size_t* count) {
-  if (count) *count = 0;
-  if (!session) return RefuseNull();
-  return Guard(session->error, [&] {
-    if (!count || (!stations && capacity > 0)) return Refuse(session->error, "null stations");
-    std::deque<Station>& waiting = session->mailbox.waiting;
-    for (; *count < capacity && !waiting.empty(); waiting.pop_front()) {
-      stations[(*count)++] = StationOf(waiting.front());
-    }
-    return int{WELLGYRO_OK};
-  });
+  return PollInto(session, stations, capacity, count, StationOf);
+}
+
+int wellgyro_poll_directed(wellgyro_session* session, wellgyro_directed_station* stations,
+                           size_t capacity, size_t* count) {
+  return PollInto(session, stations, capacity, count, DirectedOf);
 }
 
 int64_t wellgyro_refused(const wellgyro_session* session) {
@@ -269,6 +327,28 @@ int wellgyro_finish(wellgyro_session* session) {
   });
 }
 
+int wellgyro_verdict(wellgyro_session* session, int32_t tool, int32_t* verdict, char* causes,
+                     size_t capacity, size_t* size) {
+  if (size) *size = 0;
+  if (verdict) *verdict = WELLGYRO_VERDICT_FAIL;
+  if (!session) return RefuseNull();
+  return Guard(session->error, [&] {
+    if (!verdict) return Refuse(session->error, "null verdict");
+    if (!causes && capacity > 0) return Refuse(session->error, "null causes");
+    if (causes && !size) return Refuse(session->error, "null size");
+    const wellgyro::Survey survey = session->surveyor->Current(tool);
+    if (!survey.unusable.empty()) {
+      session->error = survey.unusable;
+      return int{WELLGYRO_UNUSABLE};
+    }
+    *verdict = NumberOf(survey.verdict.verdict);
+    if (!size) return int{WELLGYRO_OK};
+    const std::string lines = fmt::format("{}", fmt::join(survey.verdict.causes, "\n"));
+    if (!Fits(lines, causes, capacity, *size)) return Refuse(session->error, kDoesNotFit);
+    return int{WELLGYRO_OK};
+  });
+}
+
 int wellgyro_survey_csv(wellgyro_session* session, int32_t tool, char* text, size_t capacity,
                         size_t* size) {
   if (size) *size = 0;
@@ -282,9 +362,7 @@ int wellgyro_survey_csv(wellgyro_session* session, int32_t tool, char* text, siz
     }
     const std::string csv =
         wellgyro::SurveyCsv(survey.chosen, session->grid ? &*session->grid : nullptr);
-    *size = csv.size() + 1;
-    if (capacity < *size) return Refuse(session->error, "the text does not fit");
-    std::memcpy(text, csv.c_str(), *size);
+    if (!Fits(csv, text, capacity, *size)) return Refuse(session->error, kDoesNotFit);
     return int{WELLGYRO_OK};
   });
 }

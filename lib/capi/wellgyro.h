@@ -64,6 +64,30 @@ typedef struct wellgyro_imu {
   double field_t[3];     ///< magnetic flux density [T]; where WELLGYRO_HAS_MAG
 } wellgyro_imu;
 
+/// Bits of the quality of a station: why it is worth less than its sigmas say.
+enum {
+  WELLGYRO_QUALITY_GOOD = 0,
+  WELLGYRO_QUALITY_MOVED = 1,         ///< the tool turned or travelled during a stop
+  WELLGYRO_QUALITY_MIRROR = 2,        ///< the north fix has a second solution, not excluded
+  WELLGYRO_QUALITY_VERTICAL = 4,      ///< too near vertical for azimuth or toolface to mean much
+  WELLGYRO_QUALITY_SATURATED = 8,     ///< a sensor reached its full scale
+  WELLGYRO_QUALITY_GAP = 16,          ///< samples are missing
+  WELLGYRO_QUALITY_DEPTH = 32,        ///< depth missing, held or contradicted
+  WELLGYRO_QUALITY_TEMPERATURE = 64,  ///< outside the calibrated temperatures
+  WELLGYRO_QUALITY_ALIASED = 128,     ///< rotation too fast for the sampling on the way to it
+  WELLGYRO_QUALITY_GRAVITY = 256,     ///< |f| differs from gravity beyond its limit
+  WELLGYRO_QUALITY_EARTH_RATE = 512,  ///< the rate at rest differs from the Earth's
+  WELLGYRO_QUALITY_CLOCK = 1024,      ///< the tie of the tool's clock to UTC is doubtful
+  WELLGYRO_QUALITY_UNFIT = 2048       ///< what failed the run can have touched it: do not use it
+};
+
+/// What a survey is worth to those who are handed it.
+enum {
+  WELLGYRO_VERDICT_PASS = 0,
+  WELLGYRO_VERDICT_WARN = 1,
+  WELLGYRO_VERDICT_FAIL = 2  ///< whole, but not to be handed over as it is
+};
+
 /// A reading of the depth system: along-hole depth of the string's reference point.
 typedef struct wellgyro_depth {
   int64_t utime_us;
@@ -88,7 +112,7 @@ typedef struct wellgyro_station {
   int32_t revision;   ///< counts up when the station comes again, better known
   int32_t status;     ///< 0 provisional, 1 field, 2 definitive, 3 rejected, 4 superseded
   int32_t kind;       ///< 0 tie-in, 1 gyrocompass, 2 continuous, 3 still
-  uint32_t quality;   ///< bits as survey_station_t.quality; 0: good
+  uint32_t quality;   ///< bits WELLGYRO_QUALITY_...; 0: good
   uint32_t reserved;  ///< 0
   double md_m;
   double inclination_rad;
@@ -101,7 +125,14 @@ typedef struct wellgyro_station {
   double cov_position_m2[9];  ///< north, east, TVD
 } wellgyro_station;
 
-/// Of the library, as "0.1.0".
+/// A station and the direction of the hole there, which is regular at every inclination.
+typedef struct wellgyro_directed_station {
+  wellgyro_station station;
+  double tangent[3];           ///< the hole's unit tangent: north, east, down
+  double cov_tangent_rad2[9];  ///< its covariance, row by row: none along it, but where unfit
+} wellgyro_directed_station;
+
+/// Version of the library, as "0.1.0".
 WELLGYRO_C const char* wellgyro_version(void);
 
 /// A session from the job file at `path`. `*session` gets null where it fails; then
@@ -121,6 +152,10 @@ WELLGYRO_C int wellgyro_push_depth(wellgyro_session* session, const wellgyro_dep
 /// for, in the order in which they came; `*count` gets how many.
 WELLGYRO_C int wellgyro_poll(wellgyro_session* session, wellgyro_station* stations, size_t capacity,
                              size_t* count);
+/// The same with directions. One station is given by one of the two.
+WELLGYRO_C int wellgyro_poll_directed(wellgyro_session* session,
+                                      wellgyro_directed_station* stations, size_t capacity,
+                                      size_t* count);
 
 /// How many faults there were since the beginning. One may tell of a whole batch of data that was
 /// left out, or of something else that is wrong; the sentence of the last is wellgyro_error.
@@ -130,7 +165,16 @@ WELLGYRO_C int64_t wellgyro_refused(const wellgyro_session* session);
 WELLGYRO_C int wellgyro_adjust(wellgyro_session* session);
 
 /// The last revision. After it nothing can be pushed. WELLGYRO_UNUSABLE: there is no survey.
+/// WELLGYRO_OK does not say that the survey passes: that is wellgyro_verdict.
 WELLGYRO_C int wellgyro_finish(wellgyro_session* session);
+
+/// What the survey of `tool` is worth as it is now: `*verdict` gets one of WELLGYRO_VERDICT_...,
+/// and `causes` why in words, a line each, with its ending zero; `*size` gets the bytes that these
+/// take. Where `capacity` is less, the causes are not written and the answer is WELLGYRO_USAGE;
+/// with null `causes` and null `size` the verdict alone is asked for. WELLGYRO_UNUSABLE: there is
+/// no survey, and the verdict is WELLGYRO_VERDICT_FAIL.
+WELLGYRO_C int wellgyro_verdict(wellgyro_session* session, int32_t tool, int32_t* verdict,
+                                char* causes, size_t capacity, size_t* size);
 
 /// survey.csv of `tool` as it is now, with its ending zero, into `text`; `*size` gets the bytes
 /// that it takes. Where `capacity` is less, nothing is written and the answer is WELLGYRO_USAGE.

@@ -26,7 +26,7 @@ class Caller {
 
   bool CallOnce() {
     wellgyro_session*& session = sessions_[Below(sessions_.size())];
-    switch (Below(10)) {
+    switch (Below(11)) {
       case 0:
         return Open(session);
       case 1:
@@ -40,6 +40,8 @@ class Caller {
       case 5:
         return Csv(session);
       case 6:
+        return Judge(session);
+      case 7:
         wellgyro_refused(session);
         return std::string(wellgyro_error(session)).size() > 1'000'000;
       default:
@@ -126,9 +128,27 @@ class Caller {
 
   bool Poll(wellgyro_session* session) {
     std::array<wellgyro_station, 4> stations{};
+    std::array<wellgyro_directed_station, 4> directed{};
     std::size_t count = 0;
-    return wellgyro_poll(session, Below(50) == 0 ? nullptr : stations.data(), Below(5),
-                         Below(50) == 0 ? nullptr : &count) != WELLGYRO_OK;
+    std::size_t* const counted = Below(50) == 0 ? nullptr : &count;
+    const bool null = Below(50) == 0;
+    if (Below(2) == 0) {
+      return wellgyro_poll(session, null ? nullptr : stations.data(), Below(5), counted) !=
+             WELLGYRO_OK;
+    }
+    return wellgyro_poll_directed(session, null ? nullptr : directed.data(), Below(5), counted) !=
+           WELLGYRO_OK;
+  }
+
+  bool Judge(wellgyro_session* session) {
+    std::array<char, 4000> causes{};
+    std::int32_t verdict = 0;
+    std::size_t size = 0;
+    const bool null = Below(50) == 0;
+    return wellgyro_verdict(session, static_cast<std::int32_t>(Below(3)),
+                            Below(50) == 0 ? nullptr : &verdict, null ? nullptr : causes.data(),
+                            Below(2) == 0 ? 1 : causes.size(),
+                            Below(50) == 0 ? nullptr : &size) != WELLGYRO_OK;
   }
 
   bool Csv(wellgyro_session* session) {

@@ -1,5 +1,5 @@
-// Surveys a stream that feed wrote, by the C interface, and prints its stations, all at the end, and
-// survey.csv: Session JOB STREAM
+// Surveys a stream that feed wrote, by the C interface, and prints its stations, all at the end,
+// survey.csv and the verdict: Session JOB STREAM
 using System;
 using System.IO;
 using System.Runtime.InteropServices;
@@ -7,18 +7,21 @@ using System.Text;
 
 static class Session {
   const string Library = "libwellgyro_c.so.1";
-  const int ImuBytes = 120, DepthBytes = 48, StationBytes = 248;
+  const int ImuBytes = 120, DepthBytes = 48, StationBytes = 344;
 
   [DllImport(Library)] static extern int wellgyro_open(string path, out IntPtr session);
   [DllImport(Library)] static extern int wellgyro_push_imu(IntPtr s, byte[] samples, UIntPtr count);
   [DllImport(Library)] static extern int wellgyro_push_depth(IntPtr s, byte[] marks, UIntPtr count);
-  [DllImport(Library)] static extern int wellgyro_poll(IntPtr s, byte[] stations, UIntPtr capacity,
-                                                       out UIntPtr count);
+  [DllImport(Library)] static extern int wellgyro_poll_directed(
+      IntPtr s, byte[] stations, UIntPtr capacity, out UIntPtr count);
   [DllImport(Library)] static extern long wellgyro_refused(IntPtr s);
   [DllImport(Library)] static extern int wellgyro_adjust(IntPtr s);
   [DllImport(Library)] static extern int wellgyro_finish(IntPtr s);
   [DllImport(Library)] static extern int wellgyro_survey_csv(IntPtr s, int tool, byte[] text,
                                                              UIntPtr capacity, out UIntPtr size);
+  [DllImport(Library)] static extern int wellgyro_verdict(IntPtr s, int tool, out int verdict,
+                                                          byte[] causes, UIntPtr capacity,
+                                                          out UIntPtr size);
   [DllImport(Library)] static extern IntPtr wellgyro_error(IntPtr s);
   [DllImport(Library)] static extern void wellgyro_close(IntPtr s);
 
@@ -39,13 +42,26 @@ static class Session {
     var stations = new byte[1000 * StationBytes];
     for (;;) {
       UIntPtr count;
-      int answer = wellgyro_poll(session, stations, new UIntPtr(1000), out count);
+      int answer = wellgyro_poll_directed(session, stations, new UIntPtr(1000), out count);
       if (answer != 0 || (int)count == 0) return answer;
       for (int at = 0; at < (int)count * StationBytes; at += 8) {
         lines.Write("{0:X16} ", BitConverter.ToInt64(stations, at));
         if (at % StationBytes == StationBytes - 8) lines.Write("\n");
       }
     }
+  }
+
+  static int Judge(IntPtr session, Stream output) {
+    var causes = new byte[4096];
+    int verdict;
+    UIntPtr size;
+    int answer = wellgyro_verdict(session, 0, out verdict, causes, new UIntPtr(4096), out size);
+    if (answer != 0) return answer;
+    var line = Encoding.UTF8.GetBytes(verdict + " ");
+    output.Write(line, 0, line.Length);
+    causes[(int)size - 1] = (byte)'\n';
+    output.Write(causes, 0, (int)size);
+    return answer;
   }
 
   static int Print(IntPtr session) {
@@ -59,8 +75,9 @@ static class Session {
     if (answer != 1) return answer;
     var text = new byte[(int)size];
     answer = wellgyro_survey_csv(session, 0, text, size, out size);
-    if (answer == 0) output.Write(text, 0, text.Length - 1);
-    return answer;
+    if (answer != 0) return answer;
+    output.Write(text, 0, text.Length - 1);
+    return Judge(session, output);
   }
 
   static int Main(string[] arguments) {

@@ -1,6 +1,6 @@
 // Writes the samples and depths of a log as structs of wellgyro.h, surveys them by C++ and prints
-// every station that came as the words of a wellgyro_station, then survey.csv:
-// feed JOB.toml RUN.lcm STREAM
+// every station that came as the words of a wellgyro_directed_station, then survey.csv and the
+// verdict: feed JOB.toml RUN.lcm STREAM
 #include <array>
 #include <bit>
 #include <cinttypes>
@@ -21,28 +21,32 @@ namespace {
 class Printer : public wellgyro::Sink {
  public:
   void OnStation(const wellgyro::Station& from) override {
-    wellgyro_station to{.utime_us = from.utc.ns / 1000,
-                        .tool = from.tool,
-                        .run = from.run,
-                        .pass = static_cast<std::int32_t>(from.pass),
-                        .pass_number = from.pass_number,
-                        .number = from.number,
-                        .revision = from.revision,
-                        .status = static_cast<std::int32_t>(from.status),
-                        .kind = static_cast<std::int32_t>(from.kind),
-                        .quality = static_cast<std::uint32_t>(from.quality),
-                        .md_m = from.md,
-                        .inclination_rad = from.inclination,
-                        .azimuth_true_rad = from.azimuth,
-                        .toolface_rad = from.toolface,
-                        .north_m = from.p_WT_W.x(),
-                        .east_m = from.p_WT_W.y(),
-                        .tvd_m = from.p_WT_W.z()};
+    wellgyro_directed_station directed{};
+    wellgyro_station& to = directed.station;
+    to = {.utime_us = from.utc.ns / 1000,
+          .tool = from.tool,
+          .run = from.run,
+          .pass = static_cast<std::int32_t>(from.pass),
+          .pass_number = from.pass_number,
+          .number = from.number,
+          .revision = from.revision,
+          .status = static_cast<std::int32_t>(from.status),
+          .kind = static_cast<std::int32_t>(from.kind),
+          .quality = static_cast<std::uint32_t>(from.quality),
+          .md_m = from.md,
+          .inclination_rad = from.inclination,
+          .azimuth_true_rad = from.azimuth,
+          .toolface_rad = from.toolface,
+          .north_m = from.p_WT_W.x(),
+          .east_m = from.p_WT_W.y(),
+          .tvd_m = from.p_WT_W.z()};
     for (int i = 0; i < 9; ++i) {
       to.cov_md_inc_azi[i] = from.cov_md_inc_azi(i / 3, i % 3);
       to.cov_position_m2[i] = from.cov_p_WT_W(i / 3, i % 3);
+      directed.cov_tangent_rad2[i] = from.cov_tangent_L(i / 3, i % 3);
     }
-    for (const std::uint64_t word : std::bit_cast<std::array<std::uint64_t, 31>>(to)) {
+    for (int i = 0; i < 3; ++i) directed.tangent[i] = from.tangent_L[i];
+    for (const std::uint64_t word : std::bit_cast<std::array<std::uint64_t, 43>>(directed)) {
       std::printf("%016" PRIX64 " ", word);
     }
     std::printf("\n");
@@ -134,5 +138,11 @@ int main(int argc, char** argv) {
   surveyor.Finish();
   const wellgyro::WellGrid grid(*job.grid,
                                 {.latitude = job.well.latitude, .longitude = job.well.longitude});
-  std::fputs(wellgyro::SurveyCsv(surveyor.Current(0).chosen, &grid).c_str(), stdout);
+  const wellgyro::Survey survey = surveyor.Current(0);
+  std::fputs(wellgyro::SurveyCsv(survey.chosen, &grid).c_str(), stdout);
+  std::printf("%d ", static_cast<int>(survey.verdict.verdict));
+  for (std::size_t i = 0; i < survey.verdict.causes.size(); ++i) {
+    std::printf("%s%s", i > 0 ? "\n" : "", survey.verdict.causes[i].c_str());
+  }
+  std::printf("\n");
 }

@@ -1,5 +1,5 @@
-/* Surveys a stream that feed wrote, by the C interface, and prints its stations as they come and
- * survey.csv: session JOB STREAM
+/* Surveys a stream that feed wrote, by the C interface, and prints its stations as they come,
+ * survey.csv and the verdict: session JOB STREAM
  */
 #include <inttypes.h>
 #include <stddef.h>
@@ -16,14 +16,17 @@ typedef char depth_md[offsetof(wellgyro_depth, md_m) == 24 ? 1 : -1];
 typedef char station_size[sizeof(wellgyro_station) == 248 ? 1 : -1];
 typedef char station_md[offsetof(wellgyro_station, md_m) == 48 ? 1 : -1];
 typedef char station_cov[offsetof(wellgyro_station, cov_position_m2) == 176 ? 1 : -1];
+/* Added after 0.1.0. */
+typedef char directed_size[sizeof(wellgyro_directed_station) == 344 ? 1 : -1];
+typedef char directed_tangent[offsetof(wellgyro_directed_station, tangent) == 248 ? 1 : -1];
 
 static int poll(wellgyro_session* session) {
-  wellgyro_station stations[7];
+  wellgyro_directed_station stations[7];
   uint64_t words[sizeof *stations / sizeof(uint64_t)];
   size_t count, i, k;
   int answer;
   do {
-    answer = wellgyro_poll(session, stations, 7, &count);
+    answer = wellgyro_poll_directed(session, stations, 7, &count);
     for (i = 0; i < count; ++i) {
       memcpy(words, &stations[i], sizeof words);
       for (k = 0; k < sizeof words / sizeof *words; ++k) printf("%016" PRIX64 " ", words[k]);
@@ -72,6 +75,15 @@ static int print(wellgyro_session* session) {
   return answer;
 }
 
+static int judge(wellgyro_session* session) {
+  char causes[4096];
+  size_t size = 0;
+  int32_t verdict = -1;
+  int answer = wellgyro_verdict(session, 0, &verdict, causes, sizeof causes, &size);
+  if (answer == WELLGYRO_OK) printf("%d %s\n", (int)verdict, causes);
+  return answer;
+}
+
 int main(int argc, char** argv) {
   wellgyro_session* session = NULL;
   FILE* stream;
@@ -82,6 +94,7 @@ int main(int argc, char** argv) {
   answer = wellgyro_open(argv[1], &session);
   if (answer == WELLGYRO_OK) answer = push(session, stream);
   if (answer == WELLGYRO_OK) answer = print(session);
+  if (answer == WELLGYRO_OK) answer = judge(session);
   if (answer != WELLGYRO_OK) fprintf(stderr, "%s\n", wellgyro_error(session));
   wellgyro_close(session);
   fclose(stream);
