@@ -94,7 +94,7 @@ int DeliverTools(Delivery& delivery, const std::vector<ToolResult>& results, con
 
 }  // namespace
 
-Maker MakerOf() { return {"wellgyro " WELLGYRO_VERSION, "least squares of rotations"}; }
+std::string ProgramName() { return "wellgyro " WELLGYRO_VERSION; }
 
 bool MayWriteTo(const std::filesystem::path& folder) {
   const auto fault = AcceptedIn(folder);

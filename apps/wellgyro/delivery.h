@@ -16,8 +16,8 @@ namespace wellgyro::apps {
 /// What a survey says of itself on standard output.
 enum class Says { kSummary, kNothing, kJson };
 
-/// Who wrote a result, and what adjusted its runs, in run.toml.
-Maker MakerOf();
+/// Name and version of this program, in run.toml.
+std::string ProgramName();
 
 /// Says so and gives false when `folder` holds a survey that someone accepted.
 bool MayWriteTo(const std::filesystem::path& folder);

@@ -114,7 +114,7 @@ LiveSetup SetupOf(const SurveyOptions& options, const JobFile& job) {
   setup.resume = options.resume;
   setup.fill = options.fill;
   setup.formats = options.formats;
-  setup.maker = MakerOf();
+  setup.program = ProgramName();
   setup.clock = ThisClock();
   return setup;
 }

@@ -85,8 +85,8 @@ int SurveyLog(const SurveyOptions& options, const JobFile& job) {
   for (const std::string& hint : HintsAtChannels(intake.feed())) Complain(hint);
   Describe(intake, source);
   return DeliverAll(options.out, job, surveyor,
-                    RecordOf(MakerOf(), job, options.formats, intake, faults), source, options.says,
-                    options.report);
+                    RecordOf(ProgramName(), job, options.formats, intake, faults), source,
+                    options.says, options.report);
 }
 
 int SurveyTables(const SurveyOptions& options, const JobFile& job) {
@@ -97,9 +97,7 @@ int SurveyTables(const SurveyOptions& options, const JobFile& job) {
   if (!report) return Unusable(report.fault());
   FinishSurvey(surveyor, options);
   RunRecord record;
-  const Maker maker = MakerOf();
-  record.program = maker.program;
-  record.adjuster = maker.adjuster;
+  record.program = ProgramName();
   record.inputs = job.files;
   record.inputs.insert(record.inputs.end(), report->files.begin(), report->files.end());
   record.faults = faults.faults();

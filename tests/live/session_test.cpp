@@ -17,6 +17,7 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/bus/lcm_live.h"
 #include "wellgyro/io/result/run_file.h"
+#include "wellgyro/io/text_file.h"
 #include "wellgyro/survey/run_adjuster.h"
 
 #include "bus/multicast.h"
@@ -130,6 +131,10 @@ TEST_F(Session, SurveysRecordsAndResumesInTheSameFolder) {
   ASSERT_TRUE(outcome.usable());
   EXPECT_EQ(outcome.record->operations.size(), 1u);
   EXPECT_GT(observer_.stations, 5);
+  const auto run = ReadTextFile(scratch_.path() / "out" / "run.toml");
+  ASSERT_TRUE(run) << run.fault().text;
+  EXPECT_NE(run->find("\nprogram = \"wellgyro\"\n"), std::string::npos);
+  EXPECT_NE(run->find("\nadjuster = \"least squares of rotations\"\n"), std::string::npos);
 }
 
 // 2026-11-24: what was sent just before a stop was in the receiver's hands only, or waited for

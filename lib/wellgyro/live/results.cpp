@@ -51,11 +51,11 @@ std::optional<Fault> AcceptedIn(const std::filesystem::path& folder) {
   return std::nullopt;
 }
 
-RunRecord RecordOf(const Maker& maker, const JobFile& job, const std::vector<SurveyFormat>& formats,
-                   const Intake& intake, const FaultBook& surveyor_faults) {
+RunRecord RecordOf(const std::string& program, const JobFile& job,
+                   const std::vector<SurveyFormat>& formats, const Intake& intake,
+                   const FaultBook& surveyor_faults) {
   RunRecord record;
-  record.program = maker.program;
-  record.adjuster = maker.adjuster;
+  record.program = program;
   record.inputs = job.files;
   record.channels = intake.Channels();
   record.tools = intake.tools();

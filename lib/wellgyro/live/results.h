@@ -22,8 +22,8 @@ namespace wellgyro {
 WELLGYRO_EXPORT std::vector<ToolResult> ResultsOf(const Surveyor& surveyor,
                                                   const std::filesystem::path& folder);
 
-/// What is written about a survey besides the survey.
-WELLGYRO_EXPORT RunRecord RecordOf(const Maker& maker, const JobFile& job,
+/// What is written about a survey besides the survey; `program`: name and version of who writes it.
+WELLGYRO_EXPORT RunRecord RecordOf(const std::string& program, const JobFile& job,
                                    const std::vector<SurveyFormat>& formats, const Intake& intake,
                                    const FaultBook& surveyor_faults);
 

@@ -27,12 +27,6 @@ struct ToolResult {
   Survey survey;
 };
 
-/// What wrote the result: in run.toml.
-struct Maker {
-  std::string program;   ///< name and version
-  std::string adjuster;  ///< of the runs
-};
-
 class LiveBus;
 class RunAdjuster;
 struct AdviceCase;
@@ -48,8 +42,8 @@ struct LiveSetup {
   bool resume = false;            ///< continues what was cut off, from `record`
   std::vector<std::string> fill;  ///< with resume: other recorders' logs
   std::vector<SurveyFormat> formats;
-  Maker maker = {"wellgyro", "none"};
-  LiveClock clock;                                ///< both functions are needed
+  std::string program = "wellgyro";  ///< name and version of who writes the result, for run.toml
+  LiveClock clock;                   ///< both functions are needed
   std::shared_ptr<const AdviceCase> advise = {};  ///< null: it gives no advice
 };
 

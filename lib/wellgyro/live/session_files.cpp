@@ -181,7 +181,7 @@ Snapshot LiveSession::Core::Take() const {
   Snapshot snapshot;
   snapshot.folder = setup.out;
   snapshot.tools = ResultsOf(surveyor, setup.out);
-  snapshot.record = RecordOf(setup.maker, setup.job, setup.formats, intake, broadcast);
+  snapshot.record = RecordOf(setup.program, setup.job, setup.formats, intake, broadcast);
   snapshot.source = Source();
   snapshot.source.ended = "not yet";
   return snapshot;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "wellgyro/record/diagnosis.h"
@@ -29,6 +30,7 @@ struct RunFit {
     double freedom = 0;
   };
 
+  std::string adjuster;        ///< what made it, in words, for run.toml
   double chi_square = 0;       ///< of all residuals, priors included
   int degrees_of_freedom = 0;  ///< residuals less unknowns
   bool converged = false;      ///< false: it gave up, and the run is as it was before

@@ -21,6 +21,8 @@
 namespace wellgyro {
 namespace {
 
+constexpr const char* kEstimator = "least squares of rotations";
+
 Anchor AnchorOf(const FixAtNode& at, double azimuth) {
   return {at.node, AttitudeMatrix(azimuth, at.fix.inclination, at.fix.toolface)};
 }
@@ -91,6 +93,7 @@ NodeGuess GuessOf(const EstimateSetup& setup, const RunHistory& history) {
 
 RunFit FitOf(const RunEstimate& estimate) {
   RunFit fit;
+  fit.adjuster = kEstimator;
   fit.converged = estimate.report.converged;
   fit.ambiguous = estimate.ambiguous;
   double freedom = 0;
@@ -226,6 +229,7 @@ SmoothedRun EstimatedRun(const Job& job, const RunHistory& history) {
       EstimateFrom(setup, history, {starts, [&] { return GuessOf(setup, history); }});
   if (!estimate.solved) {
     SmoothedRun before{history.attitude, history.states, RunFit{}};
+    before.fit->adjuster = kEstimator;
     before.fit->stretches = StretchesOf({}, history.knots);
     return before;
   }

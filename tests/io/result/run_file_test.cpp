@@ -141,14 +141,12 @@ TEST(RunToml, SaysAnglesAsTheJobDid) {
 }
 
 TEST(RunToml, NamesWhatAdjustedTheRunsThatWere) {
-  RunRecord record = Record();
-  record.adjuster = "least squares";
-  const auto adjuster = [&record](const Survey& survey) {
-    return toml::parse(RunToml(record, SmallJob(), survey, {}))["adjuster"].value<std::string>();
+  const auto adjuster = [](const Survey& survey) {
+    return toml::parse(RunToml(Record(), SmallJob(), survey, {}))["adjuster"].value<std::string>();
   };
   Survey survey = SmallSurvey();
   EXPECT_EQ(adjuster(survey), "none");
-  survey.runs[0].fit = std::make_shared<const RunFit>();
+  survey.runs[0].fit = std::make_shared<const RunFit>(RunFit{.adjuster = "least squares"});
   EXPECT_EQ(adjuster(survey), "least squares");
 }
 

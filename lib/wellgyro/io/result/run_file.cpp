@@ -289,9 +289,9 @@ std::string RunToml(const RunRecord& record, const Job& job, const Survey& surve
   TomlWriter toml;
   toml.Text("format", formats::kRun);
   toml.Text("program", record.program);
-  const bool adjusted =
-      std::ranges::any_of(survey.runs, [](const RunSummary& run) { return run.fit != nullptr; });
-  toml.Text("adjuster", adjusted ? record.adjuster : "none");
+  const auto adjusted =
+      std::ranges::find_if(survey.runs, [](const RunSummary& run) { return run.fit != nullptr; });
+  toml.Text("adjuster", adjusted != survey.runs.end() ? adjusted->fit->adjuster : "none");
   toml.Flag("accepted", survey.accepted);
   toml.Whole("stations", std::ssize(survey.chosen));
   toml.Whole("stations_of_all_passes", std::ssize(survey.passes));

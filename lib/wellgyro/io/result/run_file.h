@@ -30,7 +30,6 @@ struct ChannelRecord {
 /// What a survey rests on besides its messages.
 struct RunRecord {
   std::string program;                      ///< name and version
-  std::string adjuster;                     ///< what adjusted the runs whose summaries have a fit
   std::vector<InputFile> inputs;            ///< the job first
   std::optional<StopMatch> clock;           ///< of the tool, by its stops
   std::optional<double> stamps_less_stops;  ///< the samples' own UTC less that [s]
