@@ -25,13 +25,17 @@ function(wellgyro_pkgconfig name description)
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()
 
-set_target_properties(wellgyro PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0)
+# No ABI is promised from one minor version to the next: each has a soname of its own.
+set(soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set_target_properties(wellgyro PROPERTIES VERSION ${PROJECT_VERSION}
+  SOVERSION ${soversion})
 wellgyro_install(wellgyro wellgyro)
 wellgyro_pkgconfig(wellgyro "Gyro wellbore surveying"
   REQUIRES eigen3 REQUIRES_PRIVATE geographiclib fmt tomlplusplus pugixml libcrypto sqlite3 yaml-cpp
     proj libzip)
 if(TARGET wellgyro-fit)
-  set_target_properties(wellgyro-fit PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0)
+  set_target_properties(wellgyro-fit PROPERTIES VERSION ${PROJECT_VERSION}
+  SOVERSION ${soversion})
   wellgyro_install(wellgyro-fit wellgyro-fit)
   wellgyro_pkgconfig(wellgyro-fit "Fits of wellgyro, with Ceres"
     REQUIRES wellgyro LIBS_PRIVATE "-lceres -lglog")
@@ -41,7 +45,8 @@ if(TARGET wellgyro-c)
   wellgyro_pkgconfig(wellgyro_c "wellgyro for C")
 endif()
 if(TARGET wellgyro-lcm)
-  set_target_properties(wellgyro-lcm PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0)
+  set_target_properties(wellgyro-lcm PROPERTIES VERSION ${PROJECT_VERSION}
+  SOVERSION ${soversion})
   wellgyro_install(wellgyro-lcm wellgyro-lcm)
   wellgyro_pkgconfig(wellgyro-lcm "wellgyro on LCM" REQUIRES wellgyro LIBS_PRIVATE "-llcm")
 endif()
