@@ -45,10 +45,10 @@ struct LogSurvey {
   SampleTally tally;
 };
 
-/// Surveys the LCM log at `path`, with the parts behind it where it was rotated (log_parts.h), or a
-/// pipe, or "-" for standard input: what the program's `survey` does, without its files. A Fault
-/// where the log cannot be read at all; damage inside it is told in `faults`. Throws
-/// std::invalid_argument as Surveyor does.
+/// Surveys the LCM log at `path`, with the parts behind it where it was rotated (rig.001.lcm behind
+/// rig.lcm, or rig.lcm.01 behind rig.lcm.00), or a pipe, or "-" for standard input: what the
+/// program's `survey` does, without its files. A Fault where the log cannot be read at all; damage
+/// inside it is told in `faults`. Throws std::invalid_argument as Surveyor does.
 WELLGYRO_EXPORT Result<LogSurvey> SurveyLog(const Job& job, const std::string& path);
 
 }  // namespace wellgyro

@@ -26,7 +26,7 @@ using UtcRest = Rest<struct UtcClock>;
 
 struct StopMatchSetup {
   double sigma_drift = 1e-4;  ///< of the tool clock's rate, before any stop [1]
-  double sigma_edge = 3;      ///< first guess of how well a start or stop is noted [s]
+  double sigma_edge = 3;      ///< prior of StopMatch::late, of mean 0 [s]
 };
 
 /// A tool's clock tied to UTC by its stops and starts.

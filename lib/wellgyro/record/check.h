@@ -25,8 +25,9 @@ struct Check {
   std::optional<double> limit;
   std::string unit;          ///< as written in files: deg, m, m/s2, deg/h, 1
   std::string limit_source;  ///< where the limit comes from
-  /// Of how many independent comparisons `value` is the worst, where chance alone sets the limit,
-  /// which all such checks of a run then share (survey/verdict.h); 0: the limit is another.
+  /// Number of independent comparisons of which `value` is the worst, where chance alone sets the
+  /// limit: all such checks of a run then share one rate of false alarms (README, "Verdict"). 0:
+  /// the limit is another.
   double looks = 0;
   double freedom = 0;  ///< of chi-square over it, where `value` is that; 0: value / sigma is normal
   Verdict verdict = Verdict::kNotDone;

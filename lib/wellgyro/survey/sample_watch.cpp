@@ -53,7 +53,7 @@ constexpr double kSettles = 10;
 
 constexpr const char* kAxisNames[] = {"gyro x",  "gyro y",  "gyro z",
                                       "accel x", "accel y", "accel z"};
-// In the order of PairingOf().
+// In the order of PredictionsOf().
 constexpr const char* kPairingNames[] = {
     "as the job has them",
     "accelerometer x or gyro y inverted",

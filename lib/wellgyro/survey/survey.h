@@ -43,8 +43,8 @@ struct RunSummary {
   std::int64_t samples_aliased = 0;  ///< that turned too far in one period
   std::int64_t samples_temperature_outside = 0;
   float temperature_min = 0, temperature_max = 0;  ///< [degC]
-  /// How the run as a whole fits together (record/run_fit.h); null before Adjust and Finish,
-  /// and of a run that could not be adjusted.
+  /// How the run as a whole fits together; null before Adjust and Finish, and of a run that could
+  /// not be adjusted. Its contents are in run.toml and checks, and not promised here.
   std::shared_ptr<const RunFit> fit;
   std::shared_ptr<const RunSlip> slip;  ///< by its passes; null before they are made
   std::vector<NorthFix> fixes;

@@ -38,7 +38,7 @@ WELLGYRO_EXPORT Result<CompareAnswer> AnswerCompare(const CompareRequest& reques
 
 /// compare.csv: MD[m],INC_A[deg],INC_B[deg],D_INC[deg],SIG_D_INC[deg],AZI_A[deg],AZI_B[deg],
 /// D_AZI[deg],SIG_D_AZI[deg],DN[m],DE[m],DV[m], the six columns of the covariance of what is left
-/// of it without ComparedPlace::between_stations, POS_SIGMAS of that, and
+/// of it without ComparedPlace::between_stations_W, POS_SIGMAS of that, and
 /// BETWEEN_N[m],BETWEEN_E[m],BETWEEN_V[m]; differences are the second less the first.
 WELLGYRO_EXPORT std::string CompareCsv(const std::vector<ComparedPlace>& places);
 

@@ -22,8 +22,7 @@
 namespace wellgyro {
 namespace {
 
-// [s], the shortest stop that joins clocks: several times what its ends are noted to, 3 s
-// (sigma_edge of StopMatchSetup).
+// [s], the shortest stop that joins clocks: several times what its ends are noted to, some seconds.
 constexpr double kRest = 20;
 // [s] between marks of one rest: a logger that writes when depth changes is silent in it.
 constexpr double kRestGap = 60;

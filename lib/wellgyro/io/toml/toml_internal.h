@@ -21,7 +21,7 @@
 
 namespace wellgyro {
 
-/// Carries a Fault from any depth of a reader to its door, ReadToml. Never leaves io/.
+/// Carries a Fault from any depth of a reader to its door, ReadTomlText. Never leaves io/.
 struct TomlError {
   Fault fault;
 };
