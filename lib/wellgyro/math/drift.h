@@ -22,7 +22,7 @@ struct DriftCoefficients {
 
 /// Where things stand in the drift's state: the integral of gain x rate, then the rate's parts. The
 /// rate is level + Markov (+ white); the level gathers constant, random walk and ramp.
-enum DriftState { kDriftIntegral, kDriftLevel, kDriftMarkov, kDriftRamp, kDriftStates };
+enum DriftState { kDriftIntegral, kDriftLevel, kDriftMarkov, kDriftRamp };
 
 /// x(t + dt) = transition x(t) + noise of covariance `noise`.
 struct DriftStep {

@@ -1,31 +1,8 @@
 #pragma once
 
-#include <cstdint>
-
 #include "wellgyro/base/export.h"
 
 namespace wellgyro {
-
-/// Mean and variance of a stream in one pass (Welford, Technometrics 4, 1962): no cancellation
-/// when the mean is large against the scatter.
-class RunningStatistics {
- public:
-  void Add(double x) {
-    ++count_;
-    const double d = x - mean_;
-    mean_ += d / static_cast<double>(count_);
-    squares_ += d * (x - mean_);
-  }
-  std::int64_t count() const { return count_; }
-  double mean() const { return mean_; }
-  /// Unbiased; 0 for fewer than two values.
-  double variance() const { return count_ > 1 ? squares_ / static_cast<double>(count_ - 1) : 0; }
-
- private:
-  std::int64_t count_ = 0;
-  double mean_ = 0;
-  double squares_ = 0;
-};
 
 /// Regularised incomplete gamma functions P(a, x) and Q(a, x) = 1 - P(a, x), a > 0, x >= 0; both
 /// keep their relative accuracy, 1e-10, in their small tail. Series and continued fraction

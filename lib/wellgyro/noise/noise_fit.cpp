@@ -159,8 +159,6 @@ class Fitter {
       if (i % 32 == 0) Report(0.5 + 0.4 * i / replicates);
     }
     shape_ = shape;
-    const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
-    fit.cov_coefficient = centred.transpose() * centred / (replicates - 1);
     for (const auto term : kAllNoiseTerms) {
       TermFit& of = fit.term[term];
       if (!of.observable) continue;

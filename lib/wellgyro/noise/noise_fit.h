@@ -39,9 +39,6 @@ struct NoiseFit {
   PerTerm<TermFit> term{};
   /// As fitted, with what terms that are not observable took: the best description of the table.
   NoiseModel model;
-  /// Bootstrap covariance of the coefficients in `model`, in the order of NoiseTerm.
-  Eigen::Matrix<double, kNoiseTerms, kNoiseTerms> cov_coefficient =
-      Eigen::Matrix<double, kNoiseTerms, kNoiseTerms>::Zero();
   std::optional<double> sigma_correlation_time;  ///< [s]; for Gauss-Markov
   double deviance = 0;  ///< of the table from the model; about `points` less terms when it fits
   int points = 0;       ///< averaging times used
@@ -53,7 +50,7 @@ struct NoiseFit {
 /// fitted by non-negative weights (quasi-likelihood, so that the fit is not drawn to the low ones).
 /// A ramp, which steals from random walk, is kept only when observable. A term is observable when
 /// the deviance it gains exceeds what it would gain by chance in 95 of 100 logs without it. Bounds
-/// and covariance come from a parametric bootstrap that draws whole tables with the correlation of
+/// and sigmas come from a parametric bootstrap that draws whole tables with the correlation of
 /// neighbouring averaging times; the upper bound of a term that is not observable comes from its
 /// profile deviance, the limit again by bootstrap. On logs of 1e6 samples the intervals of
 /// observable terms, and value +- 1.96 sigma, hold the truth in 94 to 97 of 100
