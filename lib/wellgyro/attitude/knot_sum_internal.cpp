@@ -122,16 +122,29 @@ Eigen::Vector2d WobbleFollowed(const Block& b) {
   return {1 / (1 + missed), 1 / (1 + 16 * missed)};
 }
 
+// Integrals over the parts of a knot's blocks in it, x + i y across the axis, de-rolled by psi
+// where the block's integrals are. Those of force leave out blocks at full scale; `forced` is their
+// time.
 struct Sums {
-  Complex turn = 0;
-  double unkept = 0, coning = 0;
-  Complex wx = 0, wy = 0, unit = 0, skew = 0, fx = 0, fy = 0, unit_z = 0;
-  Complex back = 0, turn_moment = 0, force_moment = 0;
-  double x = 0, y = 0, z = 0, back_z = 0, forced = 0;
-  double followed = 0, blocks = 0;  // integral of the root of the roll's walk; phases
-  double var_missed = 0;            // of the integral of psi by a third axis [rad^2 s^2]
-  Eigen::Vector2d wobble = Eigen::Vector2d::Zero();
-  std::array<Complex, 4> harmonics{};  // as Increment::turn_by_harmonic
+  Complex turn = 0;            // of the rate [rad]
+  double unkept = 0;           // bound of the truncation error of `turn` [rad]
+  double coning = 0;           // axial turn of second order, half the integral of turn x w [rad^2]
+  Complex wx = 0, wy = 0;      // of either gyro's rate, turned by psi [rad]
+  Complex unit = 0;            // of exp(i psi) [s]
+  Complex skew = 0;            // of the rate of psi times the rate [rad^2/s]
+  Complex fx = 0, fy = 0;      // of either accelerometer's force, turned by psi [m/s]
+  Complex unit_z = 0;          // of f_z exp(i psi) [m/s]
+  Complex back = 0;            // of the force, in the attitude at the knot's begin [m/s]
+  double back_z = 0;           // its part along the axis [m/s]
+  Complex turn_moment = 0;     // first moment of the rate about the knot's begin [rad s]
+  Complex force_moment = 0;    // first moment of the force about it [m]
+  double x = 0, y = 0, z = 0;  // of the force in T [m/s]
+  double forced = 0;           // time with force [s]
+  double followed = 0;         // of the root of Block::walk [s sqrt(rad/s/sqrt(s))]
+  double blocks = 0;           // number of blocks, by their shares [1]
+  double var_missed = 0;       // variance of the integral of psi by a third axis [rad^2 s^2]
+  Eigen::Vector2d wobble = Eigen::Vector2d::Zero();  // of WobbleFollowed [s]
+  std::array<Complex, 4> harmonics{};                // as Increment::turn_by_harmonic [rad]
   Complex force() const { return fx + kI * fy; }
 
   void Add(const Ready& r, double from, double to, double at);

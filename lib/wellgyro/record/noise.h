@@ -21,7 +21,7 @@ struct NoiseCoefficients {
   double bias_instability = 0;   ///< B [rad/s]
   double rate_random_walk = 0;   ///< K [rad/s/sqrt(s)]
   double rate_ramp = 0;          ///< R [rad/s^2]
-  /// Of B as a Gauss-Markov process [s]; absent, B is a constant.
+  /// Correlation time of B as a Gauss-Markov process [s]; absent, B is a constant.
   std::optional<double> bias_instability_correlation_time = {};
 };
 

@@ -26,17 +26,17 @@ struct NorthFix {
   double azimuth = 0;        ///< true azimuth of the tool axis [rad]
   double inclination = 0;    ///< [rad]
   double toolface = 0;       ///< from the high side to the reference mark [rad]
-  /// Of (inclination, azimuth, toolface) [rad^2].
+  /// Covariance of (inclination, azimuth, toolface) [rad^2].
   Eigen::Matrix3d cov_attitude = Eigen::Matrix3d::Zero();
-  /// Of the axis, clockwise from magnetic north, where the tool has magnetometers [rad]. Compared
-  /// with `azimuth`, and never in it.
+  /// Azimuth of the axis, clockwise from magnetic north, where the tool has magnetometers [rad].
+  /// Compared with `azimuth`, and never in it.
   std::optional<double> magnetic_azimuth;
   /// Second minimum of the cost, kept whenever the data cannot exclude it; where the two have run
-  /// into one, `azimuth` lies between and its variance covers both.
+  /// into one, `azimuth` lies between and its variance covers both. True azimuth [rad].
   std::optional<double> mirror_azimuth;
   double mirror_cost = 0;  ///< cost of the mirror less cost of the solution, chi-square units
-  /// Of the azimuth against the adjusted run without it, before that against what was known when it
-  /// came; absent where that tells no azimuth.
+  /// Chi-square of one degree of freedom of the azimuth against the adjusted run without it, before
+  /// that against what was known when it came; absent where that tells no azimuth.
   std::optional<double> chi_square;
   /// The same as an angle, and its sigma [rad].
   double closure = 0, sigma_closure = 0;
@@ -44,14 +44,14 @@ struct NorthFix {
   /// it does not. With their sigmas [rad/s].
   std::optional<Eigen::Vector2d> gyro_bias;
   Eigen::Vector2d sigma_gyro_bias = Eigen::Vector2d::Zero();
-  /// Of the toolface at rest, in the window where it is most for its sigma [rad/s].
+  /// Rate of the toolface at rest, in the window where it is most for its sigma [rad/s].
   std::optional<double> roll_rate;
   double sigma_roll_rate = 0;  ///< [rad/s]
   int roll_windows = 1;        ///< that tell one, of which this is the most
   double gravity = 0;          ///< measured |f| [m/s^2]
   double gravity_ref = 0;      ///< of the Earth model at the place [m/s^2]
   double sigma_gravity = 0;    ///< [m/s^2]
-  /// Rate at rest against the Earth's, in the direction the axes can still see.
+  /// Rate at rest against the Earth's, in the direction the axes can still see [rad/s].
   std::optional<double> earth_rate;
   double earth_rate_ref = 0;    ///< [rad/s]
   double sigma_earth_rate = 0;  ///< [rad/s]

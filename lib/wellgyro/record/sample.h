@@ -72,7 +72,7 @@ struct StillWindow {
   Eigen::Vector3d b_T = Eigen::Vector3d::Zero();           ///< flux density [T]; where has_mag
   bool has_gz = false;
   bool has_mag = false;
-  /// Of the toolface over the window, by gravity; absent where too short to tell [rad/s].
+  /// Rate of the toolface over the window, by gravity; absent where too short to tell [rad/s].
   std::optional<double> roll_rate;
   double sigma_roll_rate = 0;                  ///< noise alone [rad/s]
   std::optional<std::int32_t> index_position;  ///< of an indexing tool

@@ -49,8 +49,9 @@ struct Station {
   double inclination = 0;  ///< I of the tangent [rad]; this, A and their covariance: DeriveAngles()
   double azimuth = 0;      ///< A, true [rad], [0, 2 pi); that of the tool where I is 0
   double toolface = 0;     ///< of the tool, high side to reference mark [rad]
-  /// Of (md, inclination, azimuth) [m, rad]: as written, at the edge. Near vertical an azimuth has
-  /// no sigma that means much; what is known of the direction there is in `cov_tangent_L`.
+  /// Covariance of (md, inclination, azimuth) [m, rad]: as written, at the edge. Near vertical an
+  /// azimuth has no sigma that means much; what is known of the direction there is in
+  /// `cov_tangent_L`.
   Eigen::Matrix3d cov_md_inc_azi = Eigen::Matrix3d::Zero();
   Eigen::Vector3d p_WT_W = Eigen::Vector3d::Zero();      ///< north, east, TVD in the well frame [m]
   Eigen::Matrix3d cov_p_WT_W = Eigen::Matrix3d::Zero();  ///< [m^2]

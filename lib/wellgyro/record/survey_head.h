@@ -14,9 +14,9 @@
 /// give is empty.
 namespace wellgyro {
 
-/// Of lengths in a file.
+/// Unit of lengths in a file.
 enum class LengthUnit { kMetre, kFoot, kUsFoot };
-/// Of dogleg severity, build and turn in a file.
+/// Unit of dogleg severity, build and turn in a file.
 enum class CurvatureUnit { kDegPer30m, kDegPer100ft, kDegPerMetre, kDegPerFoot, kRadPerMetre };
 
 /// The tool, as the exchange formats class it.

@@ -50,7 +50,7 @@ struct AlignmentSpec {
 
 /// How samples are summed on the run.
 struct AttitudeSpec {
-  /// Of the form that sums samples: its error falls with this power of the sample's period.
+  /// Order of the form that sums samples: its error falls with this power of the sample's period.
   enum class Order { kSecond, kThird };
   Order order = Order::kThird;  ///< the second is cheaper, not better
 };
