@@ -158,8 +158,8 @@ void AddBridge(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   command->add_option("--baud", options->baud, "Of a serial line")->capture_default_str();
   command->footer(
-      "Example:\n  wellgyro bridge --from wits0:tcp://10.0.0.7:5000 --to "
-      "udpm://239.255.76.67:7667 --items rig.toml");
+      "Example:\n  wellgyro bridge --from wits0:tcp://10.0.0.7:5000 \\\n"
+      "      --to udpm://239.255.76.67:7667 --items rig.toml");
   command->callback([options, &exit_code] { exit_code = RunBridge(*options); });
 }
 

@@ -56,9 +56,9 @@ void AddCompare(CLI::App& app, int& exit_code) {
   command->add_option("--model-b", r.second_model, "error model of B");
   command->add_flag("--same-run", r.options.same_run,
                     "both are passes of one tool in one run: systematic errors are common");
-  command->add_option("--at", r.options.at, "measured depths in m to compare at, with commas")
+  command->add_option("--at", r.options.at, "measured depths [m] to compare at, with commas")
       ->delimiter(',');
-  command->add_option("--every", r.options.every, "compare at whole multiples of so many metres")
+  command->add_option("--every", r.options.every, "compare at whole multiples of this depth [m]")
       ->check(CLI::Range(1e-3, 1e6));
   AddNumber(*command, "--local-sigma-deg", r.options.local_sigma, units::kDeg,
             "1 sigma of each direction difference that no model speaks of, default 0.05")
@@ -67,8 +67,9 @@ void AddCompare(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "folder for compare.csv, checks.csv, compare.toml");
   command->footer(
       "Differences are B less A at the same measured depth. Example:\n"
-      "  wellgyro compare mwd.csv gyro.csv --model-a 'ISCWSA MWD Rev 4' --model-b GYRO-NS-CT \\\n"
-      "      --latitude-deg 60 --field-nt 50000 --dip-deg 70 --declination-deg 0 --out compared\n"
+      "  wellgyro compare mwd.csv gyro.csv --model-a 'ISCWSA MWD Rev 4' \\\n"
+      "      --model-b GYRO-NS-CT --latitude-deg 60 --field-nt 50000 --dip-deg 70 \\\n"
+      "      --declination-deg 0 --out compared\n"
       "Exit code 4 where the surveys differ by more than their errors allow.");
   OnCall(command, exit_code, [options] { return RunCompare(*options); });
 }

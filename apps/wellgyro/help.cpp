@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -61,6 +62,15 @@ std::string Filled(std::string line, const std::string& text, std::size_t indent
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return out + line + '\n';
+}
+
+/// The range of a number as people write it: CLI11 says "FLOAT:FLOAT in [-90 - 90]".
+std::string InWords(const std::string& options) {
+  static const std::regex range(R"((FLOAT|INT|UINT):\1 in \[(\S+) - (\S+)\])");
+  static const std::regex positive(":POSITIVE"), not_negative(":NONNEGATIVE");
+  const std::string ranged = std::regex_replace(options, range, "$1 from $2 to $3");
+  return std::regex_replace(std::regex_replace(ranged, positive, " above 0"), not_negative,
+                            " from 0");
 }
 
 /// What is wrong with the words that `command` did not take, nor left to one of its own commands;
@@ -128,7 +138,7 @@ std::string HelpText::make_footer(const CLI::App* command) const {
 }
 
 std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
-  return Entry(make_option_name(option, is_positional) + make_option_opts(option),
+  return Entry(make_option_name(option, is_positional) + InWords(make_option_opts(option)),
                make_option_desc(option));
 }
 

@@ -70,9 +70,9 @@ void AddMerge(CLI::App& app, int& exit_code) {
   MergeRequest& r = options->request;
   command->add_option("PLAN", options->plan, "legs and policy (TOML)")->required();
   AddPlace(*command, r.surroundings, r.convergence);
-  command->add_option("--at", r.at, "measured depths in m for resampled.csv, with commas")
+  command->add_option("--at", r.at, "measured depths [m] for resampled.csv, with commas")
       ->delimiter(',');
-  command->add_option("--every", r.every, "the same at whole multiples of so many metres")
+  command->add_option("--every", r.every, "the same at whole multiples of this depth [m]")
       ->check(CLI::Range(1e-3, 1e6));
   CLI::Option* const formats =
       command

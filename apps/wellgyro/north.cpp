@@ -200,8 +200,8 @@ void AddNorth(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(-180.0, 360.0));
   AddNumber(*command, "--height-m", o->height, 1, "above the ellipsoid, for the field");
   command->add_option("--crs", o->crs, "projected system of the EPSG registry, as EPSG:23031");
-  AddNumber(*command, "--easting", o->easting, 1, "in the system's own unit, with --crs");
-  AddNumber(*command, "--northing", o->northing, 1, "likewise");
+  AddNumber(*command, "--easting", o->easting, 1, "of the place [unit of --crs, as a rule m]");
+  AddNumber(*command, "--northing", o->northing, 1, "of the place [unit of --crs, as a rule m]");
   command->add_option("--date", o->date, "YYYY-MM-DD, of the magnetic field");
   command->add_option("--magnetic-model", o->model, "wmm2025 (default), wmm2020 or igrf14");
   command->add_option("--magnetic-data", o->data, "folder of the models, if others");

@@ -219,8 +219,8 @@ void AddRecord(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--append", options->append, "Continue behind what the log holds");
   command->footer(
-      "Example:\n  wellgyro record --from udpm://239.255.76.67:7667 --out rig.lcm "
-      "--rotate-mb 1000");
+      "Example:\n  wellgyro record --from udpm://239.255.76.67:7667 --out rig.lcm \\\n"
+      "      --rotate-mb 1000");
   command->callback([options, &exit_code] { exit_code = Record(*options); });
 }
 

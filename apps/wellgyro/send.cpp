@@ -111,8 +111,8 @@ void AddSend(CLI::App& app, int& exit_code) {
   what->excludes(make);
   command->footer(
       "Example:\n  wellgyro send --new-key console.pem\n"
-      "  wellgyro send finish --who Ada --job job.toml --key console.pem --to "
-      "udpm://239.255.76.67:7667");
+      "  wellgyro send finish --who Ada --job job.toml --key console.pem \\\n"
+      "      --to udpm://239.255.76.67:7667");
   command->callback([options, new_key, &exit_code] {
     if (!new_key->empty()) {
       exit_code = MakeKey(*new_key);

@@ -220,8 +220,8 @@ std::optional<Fault> Simulate(const SimulateOptions& options) {
 std::string Help() {
   return std::string(
              "Example:\n  wellgyro simulate --job data/demo/simulation.toml --out tool.lcm\n"
-             "  wellgyro simulate --job data/demo/simulation.toml --out udpm://239.255.76.67:7667 "
-             "--speed 10\n\n"
+             "  wellgyro simulate --job data/demo/simulation.toml \\\n"
+             "      --out udpm://239.255.76.67:7667 --speed 10\n\n"
              "[[fault]] in the file: cause, its keys, begin_s and end_s since the begin of the "
              "run, "
              "every_s\n"

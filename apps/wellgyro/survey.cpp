@@ -212,8 +212,8 @@ void AddSurvey(CLI::App& app, int& exit_code) {
       "Example:\n  wellgyro survey --job data/demo/job.toml --from data/demo/run.lcm "
       "--out result\n"
       "  wellgyro survey --job job.toml --from tool.csv --from tally.csv --out result\n"
-      "  wellgyro survey --job job.toml --from udpm://239.255.76.67:7667 --page 127.0.0.1:8080 "
-      "--out live");
+      "  wellgyro survey --job job.toml --from udpm://239.255.76.67:7667 \\\n"
+      "      --page 127.0.0.1:8080 --out live");
   command->callback([options, &exit_code] { exit_code = SurveyAny(*options); });
 }
 

@@ -33,6 +33,10 @@ class Terminal(FreshProgramTest):
             self.assertEqual([line for line in text.splitlines() if len(line) > 100], [])
             self.assertIn("Usage: wellgyro", text)
             self.assertNotIn("{", text)  # lists as CLI11 shows them
+            self.assertNotRegex(text, r"(FLOAT|INT):")  # and ranges
+            examples = re.findall(r"(?m)^  +wellgyro .*(?:(?<=\\)\n.*)*", text)
+            self.assertEqual([line for example in examples for line in example.splitlines()
+                              if len(line) > 80], [])
             for columns in (60, 80):
                 narrow = Help(*words, columns=columns)
                 self.assertEqual(narrow.split(), text.split())

@@ -77,6 +77,9 @@ TEST(SensorCsv, NamesTheLineAndColumnOfWhatItCannotUse) {
            {"TOOL[s],GYY[deg/h]\n1,2\n",
             "is not known; is GY meant? Known are UTC, END_UTC, TOOL,"},
            {"TOOL[s],gz[deg/h]\n1,2\n", "is not known; is GZ meant?"},
+           {"TOOL[s],GX[deg/h],FX[m/s2]\n1,2,3\n", "is not known; is AX meant?"},
+           {"TOOL[s],GX[deg/h],QX[g]\n1,2,3\n", "is not known; is AX meant?"},
+           {"UTC[s],DEPTH[m]\n1,2\n", "is not known; is MD meant?"},
            {"TOOL[s],WHAT\n1,2\n", "column \"WHAT\" is not known; known are UTC, END_UTC, TOOL,"},
            {"\xED\xA1\xDA\x01\x01\x02,\xFF", "an LCM log, no table"}}) {
     scratch.Write("a.csv", text);

@@ -66,17 +66,56 @@ std::string Shown(std::string_view text) {
   return shown;
 }
 
+/// What others call a column; letters of a name alone would not tell.
+constexpr std::array<std::array<std::string_view, 2>, 12> kOthersNames{{
+    {"depth", "MD"},
+    {"dept", "MD"},
+    {"time", "UTC"},
+    {"fx", "AX"},
+    {"fy", "AY"},
+    {"fz", "AZ"},
+    {"wx", "GX"},
+    {"wy", "GY"},
+    {"wz", "GZ"},
+    {"bx", "MX"},
+    {"by", "MY"},
+    {"bz", "MZ"},
+}};
+
+/// Whether `unit` measures what a column holds; one that is none tells nothing, and may.
+bool MayHold(const Name& column, std::string_view unit) {
+  const auto is_unit = [unit](const Unit& known) { return known.name == unit; };
+  return unit.empty() || std::ranges::none_of(kUnits, is_unit) ||
+         std::ranges::any_of(kUnits, [&](const Unit& known) {
+           return is_unit(known) && known.quantity == column.quantity;
+         });
+}
+
+/// The column that seems to be meant by a heading's name and unit; empty: none.
+std::string Meant(std::string_view name, std::string_view unit) {
+  const std::string lower = Lower(Shown(name));
+  const auto is_meant = [&lower](const auto& others) { return others[0] == lower; };
+  if (const auto found = std::ranges::find_if(kOthersNames, is_meant);
+      found != kOthersNames.end()) {
+    return std::string((*found)[1]);
+  }
+  std::vector<std::string> names, lowers;
+  for (const Name& one : kNames) {
+    if (MayHold(one, unit)) lowers.push_back(Lower(names.emplace_back(one.name)));
+  }
+  const std::string like = Nearest(lower, lowers);
+  const auto place = std::ranges::find(lowers, like) - lowers.begin();
+  return like.empty() ? like : names[static_cast<std::size_t>(place)];
+}
+
 /// What is said of a heading whose name is none of a sensor's.
-std::string UnknownColumn(std::string_view heading, std::string_view name) {
-  std::vector<std::string> known, lower;
-  for (const Name& one : kNames) lower.push_back(Lower(known.emplace_back(one.name)));
-  const std::string like = Nearest(Lower(Shown(name)), lower);
-  const auto meant = std::ranges::find(lower, like) - lower.begin();
-  return fmt::format(
-      "column \"{}\" is not known; {} are {}", Shown(heading),
-      like.empty() ? "known"
-                   : fmt::format("is {} meant? Known", known[static_cast<std::size_t>(meant)]),
-      fmt::join(known, ", "));
+std::string UnknownColumn(std::string_view heading, std::string_view name, std::string_view unit) {
+  std::vector<std::string_view> known;
+  for (const Name& one : kNames) known.push_back(one.name);
+  const std::string meant = Meant(name, unit);
+  return fmt::format("column \"{}\" is not known; {} are {}", Shown(heading),
+                     meant.empty() ? "known" : fmt::format("is {} meant? Known", meant),
+                     fmt::join(known, ", "));
 }
 
 /// What is said of a column in a unit that does not measure it.
@@ -145,7 +184,7 @@ void Layout::Take(std::string_view heading, int field) {
     places[i] = {field, known->factor};
     return;
   }
-  complain([&] { return UnknownColumn(heading, name); });
+  complain([&] { return UnknownColumn(heading, name, unit); });
 }
 
 std::optional<SensorTable> Layout::Kind() const {
