@@ -92,83 +92,101 @@ std::vector<double> TrueRoll(const Crossing& crossing, double hz) {
   return psi;
 }
 
+/// The means `W` of de-rolled rates with the term of third order, psi at the samples' begins.
+std::vector<Complex> ThirdOrder(const std::vector<Complex>& W, const std::vector<double>& psi,
+                                std::size_t first) {
+  const std::size_t per = W.size();
+  std::vector<Complex> third(per);
+  for (std::size_t j = 0; j < per; ++j) {
+    const Complex a = W[j > 0 ? j - 1 : j], b = W[j + 1 < per ? j + 1 : j];
+    const double way = (j > 0) + (j + 1 < per);
+    third[j] = W[j] + kI * (psi[first + j + 1] - psi[first + j]) * (b - a) / (12 * way);
+  }
+  return third;
+}
+
+/// Turns the mean of a sensor that turns with psi over a sample to psi = `middle`, de-averaged.
+struct Unrolled {
+  Complex operator()(std::size_t j) const {
+    const double d = psi[j + 1] - psi[j];
+    const double sinc = d == 0 ? 1 : std::sin(d / 2) / (d / 2);
+    return std::exp(kI * (0.5 * (psi[j] + psi[j + 1]) - middle)) / sinc;
+  }
+  const std::vector<double>& psi;
+  double middle;
+};
+
+/// The knot of the `per` samples from `first` on.
+RunKnot ReferenceKnot(const Crossing::Samples& s, const std::vector<double>& psi, std::size_t first,
+                      std::size_t per) {
+  const double dt = 1 / s.hz;
+  RunKnot knot;
+  Increment& inc = knot.increment;
+  inc.seconds = static_cast<double>(per) * dt;
+  inc.time.ns = std::llround(static_cast<double>(first + per) * dt * 1e9);
+  const double middle = 0.5 * (psi[first + (per - 1) / 2 + (per % 2 ? 0 : 1)] +
+                               psi[first + per / 2 + (per % 2 ? 1 : 0)]);
+  inc.roll_before = middle - psi[first];
+  inc.roll_after = psi[first + per] - middle;
+  const Unrolled unrolled{psi, middle};
+  std::vector<Complex> W(per), F(per);
+  for (std::size_t j = 0; j < per; ++j) {
+    W[j] = Across(s.w[first + j]) * unrolled(first + j);
+    F[j] = Across(s.f[first + j]) * unrolled(first + j);
+  }
+  W = ThirdOrder(W, psi, first);
+  Complex m = 0, before = 0, dm = 0, df = 0;
+  for (std::size_t j = 0; j < per; ++j) {
+    m += W[j] * dt;
+    const double share = j < per / 2 ? 1 : (per % 2 && j == per / 2 ? 0.5 : 0);
+    before += share * W[j] * dt;
+  }
+  Complex theta = -before;
+  Vector3d force = Vector3d::Zero();
+  auto& J = inc.turn_by_error;
+  const auto n = static_cast<double>(per);
+  for (std::size_t j = 0; j < per; ++j) {
+    const Complex c = unrolled(first + j), at = theta + 0.5 * W[j] * dt;
+    const double fz = s.f[first + j].z();
+    const double u = (static_cast<double>(j) + 0.5 - n / 2) / n;
+    const double rate = (psi[first + j + 1] - psi[first + j]) / dt;
+    const Complex turned = F[j] - kI * at * fz;
+    force += Vector3d(turned.real(), turned.imag(), fz + (std::conj(at) * F[j]).imag()) / n;
+    dm += kI * W[j] * u * dt;
+    df += kI * F[j] * u / n;
+    J.col(kGyroBiasX) += Pair(c * dt);
+    J.col(kGyroBiasY) += Pair(kI * c * dt);
+    J.col(kMassUnbalance) += Pair(F[j] * dt);
+    J.col(kQuadrature) += Pair(-kI * F[j] * dt);
+    J.col(kGyroScaleX) += Pair(c * s.w[first + j].x() * dt);
+    J.col(kGyroScaleY) += Pair(kI * c * s.w[first + j].y() * dt);
+    J.col(kMisalignmentX) += Pair(c * rate * dt);
+    J.col(kMisalignmentY) += Pair(kI * c * rate * dt);
+    J.col(kTimeSkew) += Pair(kI * W[j] * rate * dt);
+    inc.ForceBy(kAccelBiasX).head<2>() += Pair(c / n);
+    inc.ForceBy(kAccelBiasY).head<2>() += Pair(kI * c / n);
+    theta += W[j] * dt;
+  }
+  inc.ForceBy(kAccelBiasZ).z() = 1;
+  J.col(kToolfaceOffset) = Pair(kI * m);
+  inc.turn_M = Pair(m);
+  inc.turn_before_M = Pair(before);
+  inc.force_M = force;
+  inc.turn_per_roll = Pair(dm);
+  inc.force_per_roll = Pair(df);
+  return knot;
+}
+
 std::vector<RunKnot> ReferenceKnots(const Crossing::Samples& s, const std::vector<double>& psi,
                                     double seconds, double speed) {
   const auto per = static_cast<std::size_t>(std::lround(seconds * s.hz));
-  const double dt = 1 / s.hz;
   std::vector<RunKnot> knots;
   for (std::size_t first = 0; first + per <= s.w.size(); first += per) {
-    RunKnot knot;
-    Increment& inc = knot.increment;
-    inc.seconds = static_cast<double>(per) * dt;
-    inc.time.ns = std::llround(static_cast<double>(first + per) * dt * 1e9);
-    const double middle = 0.5 * (psi[first + (per - 1) / 2 + (per % 2 ? 0 : 1)] +
-                                 psi[first + per / 2 + (per % 2 ? 1 : 0)]);
-    inc.roll_before = middle - psi[first];
-    inc.roll_after = psi[first + per] - middle;
-    const auto unrolled = [&](std::size_t j) {  // mean of a turning sensor, de-averaged
-      const double d = psi[j + 1] - psi[j];
-      const double sinc = d == 0 ? 1 : std::sin(d / 2) / (d / 2);
-      return std::exp(kI * (0.5 * (psi[j] + psi[j + 1]) - middle)) / sinc;
-    };
-    std::vector<Complex> W(per), F(per);
-    for (std::size_t j = 0; j < per; ++j) {
-      W[j] = Across(s.w[first + j]) * unrolled(first + j);
-      F[j] = Across(s.f[first + j]) * unrolled(first + j);
-    }
-    std::vector<Complex> third(per);
-    for (std::size_t j = 0; j < per; ++j) {
-      const Complex a = W[j > 0 ? j - 1 : j], b = W[j + 1 < per ? j + 1 : j];
-      const double way = (j > 0) + (j + 1 < per);
-      third[j] = W[j] + kI * (psi[first + j + 1] - psi[first + j]) * (b - a) / (12 * way);
-    }
-    W = third;
-    Complex m = 0, before = 0, dm = 0, df = 0;
-    for (std::size_t j = 0; j < per; ++j) {
-      m += W[j] * dt;
-      if (j < per / 2)
-        before += W[j] * dt;
-      else if (per % 2 && j == per / 2)
-        before += 0.5 * W[j] * dt;
-    }
-    Complex theta = -before;
-    Vector3d force = Vector3d::Zero();
-    auto& J = inc.turn_by_error;
-    const auto n = static_cast<double>(per);
-    for (std::size_t j = 0; j < per; ++j) {
-      const Complex c = unrolled(first + j), at = theta + 0.5 * W[j] * dt;
-      const double fz = s.f[first + j].z();
-      const double u = (static_cast<double>(j) + 0.5 - n / 2) / n;
-      const double rate = (psi[first + j + 1] - psi[first + j]) / dt;
-      const Complex turned = F[j] - kI * at * fz;
-      force += Vector3d(turned.real(), turned.imag(), fz + (std::conj(at) * F[j]).imag()) / n;
-      dm += kI * W[j] * u * dt;
-      df += kI * F[j] * u / n;
-      J.col(kGyroBiasX) += Pair(c * dt);
-      J.col(kGyroBiasY) += Pair(kI * c * dt);
-      J.col(kMassUnbalance) += Pair(F[j] * dt);
-      J.col(kQuadrature) += Pair(-kI * F[j] * dt);
-      J.col(kGyroScaleX) += Pair(c * s.w[first + j].x() * dt);
-      J.col(kGyroScaleY) += Pair(kI * c * s.w[first + j].y() * dt);
-      J.col(kMisalignmentX) += Pair(c * rate * dt);
-      J.col(kMisalignmentY) += Pair(kI * c * rate * dt);
-      J.col(kTimeSkew) += Pair(kI * W[j] * rate * dt);
-      inc.ForceBy(kAccelBiasX).head<2>() += Pair(c / n);
-      inc.ForceBy(kAccelBiasY).head<2>() += Pair(kI * c / n);
-      theta += W[j] * dt;
-    }
-    inc.ForceBy(kAccelBiasZ).z() = 1;
-    J.col(kToolfaceOffset) = Pair(kI * m);
-    inc.turn_M = Pair(m);
-    inc.turn_before_M = Pair(before);
-    inc.force_M = force;
-    inc.turn_per_roll = Pair(dm);
-    inc.force_per_roll = Pair(df);
-    knot.along.known = true;
-    knot.along.md = speed * static_cast<double>(first + per) * dt;
-    knot.along.speed = speed;
-    knot.along.sigma_md = 0.003;
-    knots.push_back(knot);
+    AlongHole& along = knots.emplace_back(ReferenceKnot(s, psi, first, per)).along;
+    along.known = true;
+    along.md = speed * static_cast<double>(first + per) / s.hz;
+    along.speed = speed;
+    along.sigma_md = 0.003;
   }
   return knots;
 }

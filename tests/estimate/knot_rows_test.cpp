@@ -190,10 +190,8 @@ void ExpectGradient(const Case& c, const std::string& what) {
   }
 }
 
-/// Of a second in which the tool rolls at `rate` [rad/s] and gravity does not show it, psi = 0,
-/// with errors that go round with the tool.
-Case RollingUnseen(double rate) {
-  Case c;
+/// Gives the case a tool whose errors go round with it; these errors.
+ErrorVector TakeErrors(Case& c) {
   c.setup.gyro.angle_random_walk = 3e-6;
   c.setup.errors = {.gyro_bias_sigma = 1e-6,
                     .gyro_misalignment_sigma = 3e-4,
@@ -214,6 +212,14 @@ Case RollingUnseen(double rate) {
   is(kAccelBiasY, 3e-3);
   is(kAccelMisalignmentX, -4e-4);
   is(kAccelMisalignmentY, 6e-4);
+  return error;
+}
+
+/// Of a second in which the tool rolls at `rate` [rad/s] and gravity does not show it, psi = 0,
+/// with errors that go round with the tool.
+Case RollingUnseen(double rate) {
+  Case c;
+  const ErrorVector error = TakeErrors(c);
   c.place.site = SiteAt(1, 0);
   const double gravity = c.place.site.gravity;
   const Vector3d bend(7e-4, -3e-4, 0);

@@ -357,64 +357,6 @@ TEST(BenchFaults, UnsettledReadingsNeverDifferByZero) {
   EXPECT_THAT(text, Not(HasSubstr("by 0 V")));
 }
 
-// Few readings a position, in a transient: sigmas three times too small.
-TEST(BenchFaults, ShortRunsOnATransientHaveItInTheirSigmas) {
-  Random random(19);
-  double square = 0;
-  constexpr int kBenches = 30;
-  for (int bench = 0; bench < kBenches; ++bench) {
-    const VoltTool tool = VoltTool::Any(random);
-    const BenchTable data = TwentyFour(
-        tool, {.sigma = 1e-5, .readings = 5, .transient = 1e-4, .transient_readings = 4}, random);
-    const auto fitted = FitTwentyFourPositions(data, {.settle_tolerance = 2e-4});
-    ASSERT_TRUE(fitted.has_value()) << fitted.fault().text;
-    EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr("still change")));
-    const FitQuantity& Vb = Quantity(fitted->report, "Vb_V");
-    square += (Vb.value - tool.Vb).cwiseQuotient(Vb.sigma).squaredNorm() / 3 / kBenches;
-  }
-  EXPECT_LT(square, 1.5);
-  EXPECT_GT(square, 0.1);
-}
-
-/// Of sixty benches read in so many steps a volt: squares of the biases over their number.
-double SquaresOfRounded(double steps_per_volt, const VoltBench& setup, const std::string& remark,
-                        Random& random) {
-  constexpr int kBenches = 60;
-  double square = 0;
-  for (int bench = 0; bench < kBenches; ++bench) {
-    const VoltTool tool = VoltTool::Any(random);
-    BenchTable data = TwentyFour(tool, setup, random);
-    for (double& value : data.values.col(*data.Find("volt"))) {
-      value = std::round(value * steps_per_volt) / steps_per_volt;
-    }
-    const auto fitted = FitTwentyFourPositions(data, {.settle_tolerance = 2e-4});
-    if (!fitted) return NAN;
-    EXPECT_THAT(fitted->report.remarks, Contains(HasSubstr(remark)));
-    const FitQuantity& Vb = Quantity(fitted->report, "Vb_V");
-    square += (Vb.value - tool.Vb).cwiseQuotient(Vb.sigma).squaredNorm() / 3 / kBenches;
-  }
-  return square;
-}
-
-// 16 bits of 5 V, and a tenth of that noise; and steps of 1e-5 V without noise on an exact bench,
-// where the few values that are read lie many of them apart.
-TEST(BenchFaults, RoundingThatNoNoiseSpreadsIsInTheSigmas) {
-  Random random(23);
-  // Where rotations differ by more than a step their rounding averages: less than the bound.
-  const double noisy =
-      SquaresOfRounded(1 / 76e-6, {.sigma = 1e-5, .readings = 5}, "in steps of 7.6e-05 V", random);
-  EXPECT_LT(noisy, 1.6);
-  EXPECT_GT(noisy, 0.2);
-  const double still =
-      SquaresOfRounded(1e5, {.sigma = 0, .readings = 6}, "in steps of 1e-05 V", random);
-  EXPECT_LT(still, 1.6);
-  EXPECT_GT(still, 0.2);
-  const BenchTable fine = TwentyFour(VoltTool::Any(random), {.sigma = 1e-5, .readings = 5}, random);
-  const auto fitted = FitTwentyFourPositions(fine, {.settle_tolerance = 2e-4});
-  ASSERT_TRUE(fitted.has_value());
-  EXPECT_THAT(fitted->report.remarks, Not(Contains(HasSubstr("in steps of"))));
-}
-
 TEST(BenchFaults, GravityBesideForcesMustAgreeWithThem) {
   Random random(20);
   BenchTable data = SixPositions(PulseTool::Any(random), {1e-5, 1, 4}, random);

@@ -105,58 +105,52 @@ struct Bend {
 
 class NearVertical : public ::testing::TestWithParam<Well> {};
 
-void ExpectAsSureAsItSays(const Well& well, int seeds) {
-  const double below = well.vertical_m;
-  const std::vector<double> depths = {below + 50, below + 150, below + 250, below + 380};
-  std::vector<Claims> inclination(depths.size()), azimuth(depths.size()), place(depths.size()),
-      tangent(depths.size());
-  Claims seen;  // azimuths at the last depth, where no sample is missing
-  testing::Hour tool = testing::Tactical();
-  tool.errors.accel_bias_sigma *= 0.5;
-  tool.errors.accel_noise *= 0.5;
-  tool.errors.gyro_scale_sigma = tool.errors.gyro_misalignment_sigma = well.skewed;
-  const Job job = testing::JobOf(tool);
-  int judged = 0;  // runs whose verdict lets them be; of clean ones chance fails 1 %
-  for (int seed = 1; seed <= seeds; ++seed) {
-    const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));
-    testing::CollectingSink sink;
-    const Survey survey =
-        testing::SurveyOf(simulation, job, sink, Losing(well.lost, simulation.seed));
-    if (survey.verdict.verdict == Verdict::kFail) {
-      std::printf("seed %d fails: %s\n", seed, survey.verdict.causes.front().c_str());
-      continue;
-    }
-    ++judged;
-    const Truth truth(simulation);
-    const Eigen::Vector3d start = truth.well().PlaceAt(5).p_WT_W;
+/// What stations claim at some depths below the vertical part, over the seeds of a well.
+struct Sureness {
+  explicit Sureness(const Well& well)
+      : depths{well.vertical_m + 50, well.vertical_m + 150, well.vertical_m + 250,
+               well.vertical_m + 380} {}
+
+  void Add(const Survey& survey, const Truth& truth) {
     for (const Station& s : survey.chosen) {
       for (std::size_t i = 0; i < depths.size(); ++i) {
-        if (std::abs(s.md - depths[i]) > 1) continue;
-        const auto point = truth.well().PointAt(s.md);
-        const Bend bend(truth, s.md);
-        const Eigen::Vector2d of_inclination(-bend.inclination, 1);
-        inclination[i].Add(
-            s.inclination - point.inclination,
-            of_inclination.dot(s.cov_md_inc_azi.topLeftCorner<2, 2>() * of_inclination));
-        const Eigen::Vector3d off = s.p_WT_W - (truth.well().PlaceAt(s.md).p_WT_W - start);
-        const Eigen::Matrix3d cov = s.cov_p_WT_W + 1e-4 * Eigen::Matrix3d::Identity();
-        const Eigen::Vector2d lean =
-            (Tangent(s.inclination, s.azimuth) - Tangent(point.inclination, point.azimuth))
-                .head<2>();
-        const Eigen::Matrix2d cov_lean =
-            s.cov_tangent_L.topLeftCorner<2, 2>() +
-            s.cov_md_inc_azi(0, 0) * bend.tangent * bend.tangent.transpose();
-        tangent[i].dof = 2;
-        tangent[i].Add(lean.dot(cov_lean.inverse() * lean), lean.squaredNorm(), cov_lean.trace());
-        place[i].dof = 3;
-        place[i].Add(off.dot(cov.inverse() * off), off.squaredNorm(), cov.trace());
-        azimuth[i].Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
-        if (i + 1 < depths.size() || Has(s.quality, Quality::kGap)) continue;
-        seen.Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
+        if (std::abs(s.md - depths[i]) <= 1) Add(s, truth, i);
       }
     }
+    ++judged;
   }
-  EXPECT_GE(judged, seeds - 1 - seeds / 25) << well.name;
+  void Add(const Station& s, const Truth& truth, std::size_t i);
+  void Expect(const Well& well) const;
+
+  std::array<double, 4> depths;  // [m]
+  std::array<Claims, 4> inclination, azimuth, place, tangent;
+  Claims seen;     // azimuths at the last depth, where no sample is missing
+  int judged = 0;  // runs whose verdict lets them be; of clean ones chance fails 1 %
+};
+
+void Sureness::Add(const Station& s, const Truth& truth, std::size_t i) {
+  const Eigen::Vector3d start = truth.well().PlaceAt(5).p_WT_W;
+  const auto point = truth.well().PointAt(s.md);
+  const Bend bend(truth, s.md);
+  const Eigen::Vector2d of_inclination(-bend.inclination, 1);
+  inclination[i].Add(s.inclination - point.inclination,
+                     of_inclination.dot(s.cov_md_inc_azi.topLeftCorner<2, 2>() * of_inclination));
+  const Eigen::Vector3d off = s.p_WT_W - (truth.well().PlaceAt(s.md).p_WT_W - start);
+  const Eigen::Matrix3d cov = s.cov_p_WT_W + 1e-4 * Eigen::Matrix3d::Identity();
+  const Eigen::Vector2d lean =
+      (Tangent(s.inclination, s.azimuth) - Tangent(point.inclination, point.azimuth)).head<2>();
+  const Eigen::Matrix2d cov_lean = s.cov_tangent_L.topLeftCorner<2, 2>() +
+                                   s.cov_md_inc_azi(0, 0) * bend.tangent * bend.tangent.transpose();
+  tangent[i].dof = 2;
+  tangent[i].Add(lean.dot(cov_lean.inverse() * lean), lean.squaredNorm(), cov_lean.trace());
+  place[i].dof = 3;
+  place[i].Add(off.dot(cov.inverse() * off), off.squaredNorm(), cov.trace());
+  azimuth[i].Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
+  if (i + 1 < depths.size() || Has(s.quality, Quality::kGap)) return;
+  seen.Add(WrapPi(s.azimuth - point.azimuth), s.cov_md_inc_azi(2, 2));
+}
+
+void Sureness::Expect(const Well& well) const {
   // In all wells together with 99 %. Timid it may be: with north unknown near vertical, how the
   // Earth turns the azimuth is only bounded.
   const double risk = 0.01 / static_cast<double>(std::size(kWells) * depths.size() * 5);
@@ -181,6 +175,28 @@ void ExpectAsSureAsItSays(const Well& well, int seeds) {
   EXPECT_GT(seen.count, judged / 2) << well.name;
   // A tool that slides has nothing to tell its bias from the Earth's rate by.
   EXPECT_LT(seen.sigma_deg(), well.rpm > 0 ? 0.7 : 1.5) << well.name;
+}
+
+void ExpectAsSureAsItSays(const Well& well, int seeds) {
+  Sureness sureness(well);
+  testing::Hour tool = testing::Tactical();
+  tool.errors.accel_bias_sigma *= 0.5;
+  tool.errors.accel_noise *= 0.5;
+  tool.errors.gyro_scale_sigma = tool.errors.gyro_misalignment_sigma = well.skewed;
+  const Job job = testing::JobOf(tool);
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Simulation simulation = SimulationOf(well, tool, static_cast<std::uint64_t>(seed));
+    testing::CollectingSink sink;
+    const Survey survey =
+        testing::SurveyOf(simulation, job, sink, Losing(well.lost, simulation.seed));
+    if (survey.verdict.verdict == Verdict::kFail) {
+      std::printf("seed %d fails: %s\n", seed, survey.verdict.causes.front().c_str());
+      continue;
+    }
+    sureness.Add(survey, Truth(simulation));
+  }
+  EXPECT_GE(sureness.judged, seeds - 1 - seeds / 25) << well.name;
+  sureness.Expect(well);
 }
 
 TEST_P(NearVertical, IsAsSureAsItSays) {

@@ -108,6 +108,22 @@ testing::Hour ToolOf(std::uint64_t seed) {
   return tool;
 }
 
+/// Says which run failed, of which kind, and why.
+void PrintFailure(const Simulation& simulation, const std::string& cause) {
+  double rpm = 0, swing = 0, period = 0, speed = 0;
+  for (const RunStep& step : simulation.run.steps) {
+    if (const auto* move = std::get_if<RunMove>(&step)) {
+      rpm = move->roll.rate * 60 / kTwoPi, swing = ToDegrees(move->roll.amplitude);
+      period = move->roll.period, speed = move->speed;
+    }
+  }
+  std::printf(
+      "well %d (%.1f rpm, %.0f deg in %.0f s, %.1f m/s, kinks over %.0f m, latitude %.0f, "
+      "steps %d) fails: %.90s\n",
+      static_cast<int>(simulation.seed), rpm, swing, period, speed, simulation.well.smoothing,
+      ToDegrees(simulation.earth.latitude), (int)simulation.run.steps.size(), cause.c_str());
+}
+
 TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
   constexpr int kDrawnWells = WELLGYRO_LONG ? 300 : 3;
   Beyond inclination, azimuth, tangent{.dof = 2}, place{.dof = 3};
@@ -119,19 +135,7 @@ TEST(RandomWells, NearVerticalAreAsSureAsTheySay) {
     const Survey survey = testing::SurveyOf(simulation, testing::JobOf(tool), sink);
     if (survey.verdict.verdict == Verdict::kFail) {
       ++failed;
-      double rpm = 0, swing = 0, period = 0, speed = 0;
-      for (const RunStep& step : simulation.run.steps) {
-        if (const auto* move = std::get_if<RunMove>(&step)) {
-          rpm = move->roll.rate * 60 / kTwoPi, swing = ToDegrees(move->roll.amplitude);
-          period = move->roll.period, speed = move->speed;
-        }
-      }
-      std::printf(
-          "well %d (%.1f rpm, %.0f deg in %.0f s, %.1f m/s, kinks over %.0f m, latitude %.0f, "
-          "steps %d) fails: %.90s\n",
-          static_cast<int>(seed), rpm, swing, period, speed, simulation.well.smoothing,
-          tool.latitude_deg, (int)simulation.run.steps.size(),
-          survey.verdict.causes.front().c_str());
+      PrintFailure(simulation, survey.verdict.causes.front());
       continue;
     }
     const Truth truth(simulation);

@@ -119,6 +119,55 @@ class Operations : public ::testing::Test {
   Simulation truth_;
 };
 
+/// Every station of every run and pass is there, and of each depth one at most is not superseded.
+void ExpectEveryPass(const std::vector<Station>& passes) {
+  int misrun = 0, repeat = 0, out = 0;
+  for (const Station& s : passes) {
+    misrun += s.run == 1;
+    repeat += s.pass == Pass::kRepeat;
+    out += s.pass == Pass::kOut;
+    if (s.run == 1) {
+      EXPECT_EQ(s.status, StationStatus::kSuperseded);
+    }
+  }
+  EXPECT_GE(misrun, 7);
+  EXPECT_GE(repeat, 3);
+  EXPECT_GE(out, 23 + 3);
+  for (double md = 25; md <= 600; md += 25) {
+    const auto alive = std::count_if(passes.begin(), passes.end(), [md](const Station& s) {
+      return std::abs(s.md - md) < 0.05 && s.status == StationStatus::kField;
+    });
+    EXPECT_EQ(alive, 1) << md;
+  }
+}
+
+void ExpectChecksOfEvents(const Survey& survey) {
+  for (const char* code : {"gravity", "earth_rate", "azimuth_in_out", "inclination_in_out",
+                           "azimuth_repeat", "samples_lost"}) {
+    const Check* check = Find(survey, code, 2);
+    ASSERT_NE(check, nullptr) << code;
+    EXPECT_TRUE(check->verdict == Verdict::kPass || check->verdict == Verdict::kWarn)
+        << code << " " << check->value.value_or(NAN) << " of " << check->limit.value_or(NAN);
+    EXPECT_TRUE(check->value.has_value()) << code;
+  }
+  const Check* motion = Find(survey, "rest_motion", 2);
+  ASSERT_NE(motion, nullptr);
+  EXPECT_EQ(motion->verdict, Verdict::kPass) << "the tool's clock began anew";
+  const Check* foresight = Find(survey, "foresight", 2);
+  ASSERT_NE(foresight, nullptr);
+  ASSERT_TRUE(foresight->value.has_value());
+  EXPECT_LT(*foresight->sigma, 0.5);
+  EXPECT_NEAR(*foresight->value, -2, 3 * *foresight->sigma);
+  EXPECT_EQ(foresight->verdict, Verdict::kFail) << "2 deg are too much";
+  const Check* closure = Find(survey, "depth_closure", 2);
+  ASSERT_NE(closure, nullptr);
+  ASSERT_TRUE(closure->value.has_value());
+  EXPECT_NEAR(*closure->value, 0.1, 0.05) << "the tool stands at 0.5 m, said to be 0.4";
+  const Check* grid = Find(survey, "grid_convergence", 0);
+  ASSERT_NE(grid, nullptr);
+  EXPECT_EQ(grid->verdict, Verdict::kNotDone);
+}
+
 TEST_F(Operations, TheRightStationsAreChosenAndTheChecksSayWhatWasDone) {
   CollectingSink sink;
   Surveyor surveyor(OperatedJob(), sink);
@@ -144,51 +193,8 @@ TEST_F(Operations, TheRightStationsAreChosenAndTheChecksSayWhatWasDone) {
     EXPECT_TRUE(Has(s.quality, Quality::kUnfit)) << "the foresight is two degrees off";
   }
 
-  // Every station of every run and pass is there, and of each depth one at most is not superseded.
-  int misrun = 0, repeat = 0, out = 0;
-  for (const Station& s : survey.passes) {
-    misrun += s.run == 1;
-    repeat += s.pass == Pass::kRepeat;
-    out += s.pass == Pass::kOut;
-    if (s.run == 1) {
-      EXPECT_EQ(s.status, StationStatus::kSuperseded);
-    }
-  }
-  EXPECT_GE(misrun, 7);
-  EXPECT_GE(repeat, 3);
-  EXPECT_GE(out, 23 + 3);
-  for (double md = 25; md <= 600; md += 25) {
-    const auto alive =
-        std::count_if(survey.passes.begin(), survey.passes.end(), [md](const Station& s) {
-          return std::abs(s.md - md) < 0.05 && s.status == StationStatus::kField;
-        });
-    EXPECT_EQ(alive, 1) << md;
-  }
-
-  for (const char* code : {"gravity", "earth_rate", "azimuth_in_out", "inclination_in_out",
-                           "azimuth_repeat", "samples_lost"}) {
-    const Check* check = Find(survey, code, 2);
-    ASSERT_NE(check, nullptr) << code;
-    EXPECT_TRUE(check->verdict == Verdict::kPass || check->verdict == Verdict::kWarn)
-        << code << " " << check->value.value_or(NAN) << " of " << check->limit.value_or(NAN);
-    EXPECT_TRUE(check->value.has_value()) << code;
-  }
-  const Check* motion = Find(survey, "rest_motion", 2);
-  ASSERT_NE(motion, nullptr);
-  EXPECT_EQ(motion->verdict, Verdict::kPass) << "the tool's clock began anew";
-  const Check* foresight = Find(survey, "foresight", 2);
-  ASSERT_NE(foresight, nullptr);
-  ASSERT_TRUE(foresight->value.has_value());
-  EXPECT_LT(*foresight->sigma, 0.5);
-  EXPECT_NEAR(*foresight->value, -2, 3 * *foresight->sigma);
-  EXPECT_EQ(foresight->verdict, Verdict::kFail) << "2 deg are too much";
-  const Check* closure = Find(survey, "depth_closure", 2);
-  ASSERT_NE(closure, nullptr);
-  ASSERT_TRUE(closure->value.has_value());
-  EXPECT_NEAR(*closure->value, 0.1, 0.05) << "the tool stands at 0.5 m, said to be 0.4";
-  const Check* grid = Find(survey, "grid_convergence", 0);
-  ASSERT_NE(grid, nullptr);
-  EXPECT_EQ(grid->verdict, Verdict::kNotDone);
+  ExpectEveryPass(survey.passes);
+  ExpectChecksOfEvents(survey);
 }
 
 TEST_F(Operations, AcceptedStationsAreDefinitiveAndRejectedOnesAreNotChosen) {

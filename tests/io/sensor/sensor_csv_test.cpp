@@ -51,6 +51,9 @@ TEST(SensorCsv, NamesTheLineAndColumnOfWhatItCannotUse) {
       EXPECT_EQ(fault->column, c.column);
     }
   }
+}
+
+TEST(SensorCsv, SaysWhichColumnIsMissingOrUnknown) {
   EXPECT_FALSE(SensorTableOf("md,inc,azi"));
   EXPECT_EQ(SensorTableOf("UTC[us],MD[ft]"), SensorTable::kDepth);
   const Scratch scratch;
