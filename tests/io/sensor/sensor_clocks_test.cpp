@@ -116,8 +116,9 @@ TEST(SensorFiles, DepthOnAClockThatNoSampleHasIsRefused) {
   EXPECT_FALSE(Do(scratch, {"utc.csv", "rest.csv"}, StandsJob()).report);
 }
 
-// A logger that stamps marks each second notes a stop's ends to half of that, and the tie by stops is
-// off by more than 5 sigmas of what starts and stops tell of the lag: the tie's sigma is in the check.
+// A logger that stamps marks each second notes a stop's ends to half of that, and the tie by stops
+// is off by more than 5 sigmas of what starts and stops tell of the lag: the tie's sigma is in the
+// check.
 TEST(SensorFiles, ALagThatTheTieOfTheClocksAllowsFailsNothing) {
   const Scratch scratch;
   const StandsTables tables = TablesOf(Stands(), false);

@@ -263,7 +263,7 @@ class Joiner {
     if (has_utc_) {
       CompareStamps(*match, *first, *last);
     } else {
-      surveyor_.TieClock(std::max(match->Sigma(first->tool_time), match->Sigma(last->tool_time)));
+      surveyor_.TieClock(match->Sigma(match->tool));  // the lag is a mean over the stops
     }
     return std::nullopt;
   }
