@@ -80,7 +80,7 @@ void SetPeriod(const AllanOptions& o, SampleSeries& series) {
   if (series.period == 0) series.period = 1 / o.rate_hz;
 }
 
-void CheckUnit(const AllanOptions& o, const SampleSeries& series) {
+void CheckUnit(const AllanOptions& o, SampleSeries& series) {
   const std::string& unit = o.request.unit;
   const std::string& own = series.unit;
   const bool counts = unit == "counts" || (unit.empty() && own == "counts");
@@ -92,6 +92,11 @@ void CheckUnit(const AllanOptions& o, const SampleSeries& series) {
   if (!unit.empty() && !own.empty() && own != "counts" && unit != own) {
     throw std::invalid_argument(
         fmt::format("--unit {} contradicts the log, whose channel is in {}", unit, own));
+  }
+  if (unit.empty() && own.empty() && !o.request.unitless) {
+    series.notes.emplace_back(
+        "nothing says the readings' unit: they are taken for rad/s (--unit, or a heading as "
+        "GX[deg/h])");
   }
 }
 

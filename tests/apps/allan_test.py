@@ -98,6 +98,13 @@ class AllanOfFiles(FreshProgramTest):
         self.assertEqual(ran.returncode, 2)
         self.assertIn("3000001 places for 4 samples", ran.stderr)
 
+    def test_a_heading_without_unit_is_told(self):
+        rows = "\n".join(repr(v) for v in White(2000, 6))
+        for heading, told in (("gx", True), ("GX[deg/h]", False)):
+            ran = Allan("--data", self.Write("u.csv", f"{heading}\n{rows}\n"), "--rate-hz", "10")
+            self.assertEqual(ran.returncode, 0, ran.stderr)
+            self.assertEqual("they are taken for rad/s" in ran.stderr, told, ran.stderr)
+
     def test_what_is_left_out_and_taken_off_is_told(self):
         values = White(20000, 6)
         for i in range(2000):
@@ -108,11 +115,15 @@ class AllanOfFiles(FreshProgramTest):
         data = self.Write("log.csv", "GX[deg/h],T\n" + "\n".join(rows) + "\n")
         ran = Allan("--data", data, "--channel", "GX", "--temperature", "T", "--rate-hz", "10",
                     "--exclude", "0:200", "--robust", "--detrend", "temperature", "--table",
-                    self.Path("t.csv"))
+                    self.Path("t.csv"), "--out", self.Path("cleaned.toml"))
         self.assertEqual(ran.returncode, 0, ran.stderr)
         self.assertIn("2000 samples from 0 to 200 s left out, as asked", ran.stderr)
-        self.assertIn("1 spikes left out", ran.stderr)
-        self.assertIn("taken off: 3", ran.stderr)
+        self.assertIn("1 spike left out", ran.stderr)
+        self.assertIn("taken off: slope (3", ran.stderr)
+        # The coefficients are of what is left, and their file says so.
+        kept = self.Read(self.Path("cleaned.toml"))
+        for word in ("2000 samples from 0 to 200 s", "1 spike left out", "taken off: slope (3"):
+            self.assertIn(word, kept.split("cleaned = ")[1])
         for row in self.Rows("t.csv"):
             if float(row["edf"]) > 60:
                 expected = 6 / math.sqrt(10 * float(row["tau_s"]))

@@ -49,6 +49,28 @@ TEST(CleanSeries, TimesThatGoBackOrRunAwayAreRefused) {
   }
 }
 
+// Stamps with a jitter of a tenth of the period, of which single neighbours stand nearer than half
+// a period and further than one and a half: no sample is lost, and one that is missing is.
+TEST(CleanSeries, JitterOfATenthOfThePeriodLosesNothing) {
+  Random random(7);
+  std::vector<double> times;
+  double nearest = 1;
+  for (int i = 0; i < 36000; ++i) {
+    if (i == 20000) continue;
+    times.push_back(0.1 * i + 0.01 * random.Normal());
+    if (times.size() > 1) nearest = std::min(nearest, times.back() - times[times.size() - 2]);
+  }
+  ASSERT_LT(nearest, 0.05);
+  SampleSeries series;
+  series.values.assign(times.size(), 1);
+  const auto complaint = PlaceByTime(series, times);
+  ASSERT_EQ(complaint, std::nullopt) << complaint->text;
+  EXPECT_EQ(series.values.size(), 36000u);
+  ASSERT_EQ(series.gaps.size(), 1u);
+  EXPECT_EQ(series.gaps[0].begin, 20000);
+  EXPECT_NEAR(series.period, 0.1, 0.02 / 36000);
+}
+
 TEST(CleanSeries, StretchesAreLeftOutOnce) {
   Random random(1);
   SampleSeries series = White(1000, 1, random);

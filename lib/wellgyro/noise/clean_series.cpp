@@ -118,9 +118,14 @@ std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const 
   }
   const double period = Median(std::move(steps));
   if (!(period > 0)) return NotRising(times);
+  // Time of the last place, as the stamps about it have it: their jitter, with which single stamps
+  // come nearer than half a period, is smoothed over some 1 / kFollow of them, and a clock that
+  // runs by p of a period away is followed to p / kFollow. Behind a gap it begins anew.
+  constexpr double kFollow = 0.1;
+  double last = times.front();
   std::vector<std::int64_t> place(times.size(), 0);
   for (std::size_t i = 1; i < times.size(); ++i) {
-    const double step = (times[i] - times[i - 1]) / period;
+    const double step = (times[i] - last) / period;
     if (!(step > 0.5) || step > static_cast<double>(kGapSamplesMost)) {
       return TimesComplaint{
           fmt::format("its time is {:.6g} s after that of the sample before, where the period is "
@@ -129,7 +134,9 @@ std::optional<TimesComplaint> PlaceByTime(SampleSeries& series, std::span<const 
                       times[i] - times[i - 1], period),
           i};
     }
-    place[i] = place[i - 1] + static_cast<std::int64_t>(std::llround(step));
+    const std::int64_t steps_on = std::llround(step);
+    place[i] = place[i - 1] + steps_on;
+    last = steps_on > 1 ? times[i] : last + period + kFollow * (times[i] - last - period);
   }
   // Places of missing samples are kept, 8 bytes each: 8 MB, or 100 for each sample there is.
   constexpr std::int64_t kRoom = 1'000'000, kPerSample = 100;

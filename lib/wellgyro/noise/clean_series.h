@@ -16,8 +16,9 @@ struct TimesComplaint {
   std::size_t sample = 0;
 };
 
-/// Sets the period and a place for every sample that is missing from the samples' times [s]. Gives
-/// what is wrong with them: they go back, or lie between places.
+/// Sets the period and a place for every sample that is missing from the samples' times [s], whose
+/// jitter may be a tenth of the period, 1-sigma. Gives what is wrong with them: they go back, or
+/// lie between places.
 WELLGYRO_EXPORT std::optional<TimesComplaint> PlaceByTime(SampleSeries& series,
                                                           std::span<const double> times);
 

@@ -9,6 +9,7 @@
 #include "wellgyro/io/plot/noise_plot.h"
 #include "wellgyro/io/result/allan_unit_internal.h"
 #include "wellgyro/io/toml/noise_file.h"
+#include "wellgyro/io/words.h"
 #include "wellgyro/noise/allan_confidence.h"
 #include "wellgyro/noise/clean_series.h"
 #include "wellgyro/noise/static_log.h"
@@ -42,11 +43,12 @@ class Analyst {
     samples_ = octaves.samples;
     TellMissing(octaves);
     if (!HasTerms(octaves)) {
-      return Fault{.code = FaultCode::kRange,
-                   .text = fmt::format("{} sample(s), {} missing: not one difference of two "
-                                       "averages can be taken",
-                                       octaves.samples, octaves.missing),
-                   .source = request_.source};
+      return Fault{
+          .code = FaultCode::kRange,
+          .text = fmt::format("{}, {} missing: not one difference of two averages can be taken",
+                              Counted(static_cast<std::size_t>(octaves.samples), "sample"),
+                              octaves.missing),
+          .source = request_.source};
     }
     TellFindings();
     FitModel(octaves);
@@ -61,7 +63,8 @@ class Analyst {
                                             .channel = request_.channel,
                                             .period = series_.period,
                                             .samples = octaves.samples,
-                                            .missing = octaves.missing});
+                                            .missing = octaves.missing,
+                                            .cleaned = cleaned_});
     }
     return std::move(answer_);
   }
@@ -77,21 +80,25 @@ class Analyst {
     missing_ = series_.gaps;
     for (const auto& [from, to] : request_.exclude) {
       const std::int64_t out = Exclude(series_, from, to);
-      Note(fmt::format("{} samples from {:g} to {:g} s left out, as asked", out, from, to));
+      Cleaned(fmt::format("{} samples from {:g} to {:g} s left out, as asked", out, from, to));
     }
     if (request_.robust) {
       const std::int64_t spikes = ExcludeSpikes(series_);
-      Note(spikes > 0 ? fmt::format("{} spikes left out", spikes) : std::string("no spikes"));
+      Cleaned(spikes > 0 ? fmt::format("{} left out (beyond eight robust sigmas)",
+                                       Counted(static_cast<std::size_t>(spikes), "spike"))
+                         : std::string("spikes were looked for: there are none"));
     }
     if (!request_.detrend_temperature) return;
     const auto trend = DetrendTemperature(series_);
     if (!trend) {
-      Note("the temperature does not vary: nothing is taken off");
+      Cleaned("the temperature does not vary: nothing is taken off");
       return;
     }
-    Note(fmt::format("taken off: {} +- {} per degC at {:.4g} degC, {:.3g} of the slow changes",
-                     Reading(trend->per_degree), Reading(trend->per_degree_sigma), trend->mean,
-                     trend->explained));
+    Cleaned(
+        fmt::format("what follows the temperature is taken off: slope ({} +- {}) per degC at "
+                    "{:.4g} degC and bend, {:.3g} of the slow changes",
+                    Reading(trend->per_degree), Reading(trend->per_degree_sigma), trend->mean,
+                    trend->explained));
   }
 
   std::int64_t samples() const { return std::ssize(series_.values); }
@@ -143,6 +150,11 @@ class Analyst {
   }
 
   void Note(std::string text) { answer_.notes.push_back(std::move(text)); }
+  // For the noise file too, whose coefficients are of what is left.
+  void Cleaned(std::string text) {
+    cleaned_.push_back(text);
+    Note(std::move(text));
+  }
 
   std::string Place(const SampleGap& where) const {
     if (where.end - where.begin == 1) {
@@ -236,9 +248,10 @@ class Analyst {
         break;
       case LogFinding::Kind::kWarmUp:
         Note(
-            fmt::format("warms up: by {} with a time constant of {}; leave out the begin "
-                        "(--exclude), five of them",
-                        Reading(found.size), DurationText(*found.time_constant * series_.period)));
+            fmt::format("warms up: by {} with a time constant of {}; leave out the first five time "
+                        "constants (--exclude 0:{:.0f})",
+                        Reading(found.size), DurationText(*found.time_constant * series_.period),
+                        std::ceil(5 * *found.time_constant * series_.period)));
         break;
       case LogFinding::Kind::kTemperature:
         Note(fmt::format("drifts with temperature: {} over the log, {} per degC, fastest at {}",
@@ -367,7 +380,8 @@ class Analyst {
   const AllanRequest& request_;
   AllanUnit unit_;
   double si_ = 1;
-  std::vector<SampleGap> missing_;  ///< before anything was left out on purpose
+  std::vector<SampleGap> missing_;    ///< before anything was left out on purpose
+  std::vector<std::string> cleaned_;  ///< what was, and what was taken off
   std::optional<NoiseFit> fit_;
   NoiseModel model_;
   std::vector<AllanRow> rows_;

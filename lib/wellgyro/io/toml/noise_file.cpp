@@ -44,6 +44,7 @@ void SkipLogAndFit(TomlTable& root) {
     log->FindNumber("rate_hz", kPositive);
     log->FindNumber("samples", kNotNegative);
     log->FindNumber("missing", kNotNegative);
+    log->FindStrings("cleaned");
   }
   if (auto fit = root.FindTable("fit")) {
     fit->FindNumber("averaging_times", kNotNegative);
@@ -96,6 +97,7 @@ std::string NoiseFileText(const NoiseFit& fit, const NoiseFileHead& head) {
   toml.Number("rate_hz", 1 / head.period);
   toml.Whole("samples", head.samples);
   toml.Whole("missing", head.missing);
+  if (!head.cleaned.empty()) toml.Texts("cleaned", head.cleaned);
   toml.Table("fit");
   toml.Whole("averaging_times", fit.points);
   toml.Number("deviance", fit.deviance);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
@@ -19,6 +20,7 @@ struct NoiseFileHead {
   double period = 0;  ///< [s]
   std::int64_t samples = 0;
   std::int64_t missing = 0;
+  std::vector<std::string> cleaned;  ///< what was left out or taken off beforehand, in words
 };
 
 /// A noise file, `format = "wellgyro.noise/1"`: under [coefficients] each observable coefficient
