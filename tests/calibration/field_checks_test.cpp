@@ -152,7 +152,10 @@ TEST(FieldChecks, CalibrationDate) {
   EXPECT_EQ(CheckCalibrationDate(tool, {100 * day}).verdict, Verdict::kPass);
   EXPECT_EQ(CheckCalibrationDate(tool, {100 * day}).value, 100);
   EXPECT_EQ(CheckCalibrationDate(tool, {201 * day}).verdict, Verdict::kFail);
-  EXPECT_EQ(CheckCalibrationDate(tool, {10 * day}).verdict, Verdict::kWarn);
+  const Check ahead = CheckCalibrationDate(tool, {10 * day});
+  EXPECT_EQ(ahead.verdict, Verdict::kWarn);
+  EXPECT_EQ(ahead.code, "calibration_date_ahead");  // it has not expired, and is not said to
+  EXPECT_EQ(ahead.value, -40);
 }
 
 }  // namespace

@@ -216,7 +216,9 @@ Check CheckCalibrationDate(const ToolCalibration& tool, UtcTime data) {
     check.verdict = *check.value > 0 ? Verdict::kPass : Verdict::kFail;
   }
   if (tool.calibrated && data < *tool.calibrated && check.verdict != Verdict::kFail) {
-    if (!check.value) check.value = (data - *tool.calibrated).seconds() / units::kDay;
+    check.code = "calibration_date_ahead";
+    check.value = (data - *tool.calibrated).seconds() / units::kDay;
+    check.limit = 0;
     check.verdict = Verdict::kWarn;
   }
   return check;

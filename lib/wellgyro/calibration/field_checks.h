@@ -48,6 +48,7 @@ WELLGYRO_EXPORT std::vector<Check> CheckWindow(const StillWindow& window,
                                                const FieldCheckSetup& setup);
 
 /// `calibration_date` [d]: days that the calibration has still to run at the time of the data.
+/// Data from before the calibration are `calibration_date_ahead`, minus the days between them.
 /// Fails when it has expired, warns when the data are older than the calibration, not done without
 /// dates.
 WELLGYRO_EXPORT Check CheckCalibrationDate(const ToolCalibration& tool, UtcTime data);

@@ -98,6 +98,7 @@ constexpr CodeWords kCodeWords[] = {
     {"axes_change", "axes of the tool are swapped or inverted for a while"},
     {"bias_repeatability", "the gyros' bias changed between stops"},
     {"calibration_date", "the tool's calibration has expired"},
+    {"calibration_date_ahead", "the tool was calibrated after the run"},
     {"clock_jumps", "the tool's clock jumps"},
     {"clock_unsynced", "UTC of samples is doubtful"},
     {"compare_azimuth", "azimuths differ by more than the errors of both surveys"},
