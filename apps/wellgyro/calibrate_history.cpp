@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -26,16 +27,22 @@ struct HistoryOptions {
   HistorySetup setup;
 };
 
+// Of one calibration no change is known: the cells of changes are empty.
 void TellHistory(const ToolHistory& history) {
   for (const SourceHistory& source : history.sources) {
     const SourceUnit unit = UnitOfSource(source.name);
-    const double change = source.changes.empty() ? 0 : source.changes.back();
-    const double sigma = source.sigmas.empty() ? 0 : source.sigmas.back();
-    fmt::print("{},{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{}{}\n", Printable(history.asset_serial),
-               source.name, unit.name, history.days.size() + 1, change * unit.per_si,
-               sigma * unit.per_si, source.walk_per_sqrt_day * unit.per_si,
-               source.prior_sigma * unit.per_si, source.shifted ? "shifted" : "",
-               source.out_of_family ? " out of family" : "");
+    const auto cell = [&](std::optional<double> si) {
+      return si ? fmt::format("{:.4g}", *si * unit.per_si) : std::string();
+    };
+    const bool changed = !source.changes.empty();
+    const auto known = [&](double si) { return changed ? std::optional(si) : std::nullopt; };
+    std::string remark = changed ? "" : "one calibration: no change is known";
+    if (source.shifted) remark = "shifted";
+    if (source.out_of_family) remark += " out of family";
+    fmt::print("{},{},{},{},{},{},{},{},{}\n", Printable(history.asset_serial), source.name,
+               unit.name, history.days.size() + 1, cell(known(changed ? source.changes.back() : 0)),
+               cell(known(changed ? source.sigmas.back() : 0)),
+               cell(known(source.walk_per_sqrt_day)), cell(source.prior_sigma), remark);
   }
 }
 

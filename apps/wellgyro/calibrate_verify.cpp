@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -26,13 +27,22 @@ struct VerifyOptions {
   VerifySetup setup;
 };
 
+std::string JudgementOf(const ToolShift& shift) {
+  std::string text = shift.limit > 0 ? fmt::format(", limit {:.4g}", shift.limit) : "";
+  if (shift.shifted) text += "  shifted";
+  if (shift.limit > 0 && !shift.within) text += "  out of budget";
+  if (!shift.told) text += "  not verified";
+  return text;
+}
+
 void TellShifts(const Verification& found) {
   for (const ToolShift& shift : found.shifts) {
-    const std::string limit =
-        shift.limit > 0 ? fmt::format(", limit {:.4g}", shift.limit) : std::string();
-    fmt::print("{:<12} {:+.4g} +- {:.2g} {}{}{}{}\n", shift.name, shift.value, shift.sigma,
-               shift.unit, limit, shift.shifted ? "  shifted" : "",
-               shift.within ? "" : "  out of budget");
+    if (std::isinf(shift.sigma)) {
+      fmt::print("{:<12} not told from others by these positions  not verified\n", shift.name);
+      continue;
+    }
+    fmt::print("{:<12} {:+.4g} +- {:.2g} {}{}\n", shift.name, shift.value, shift.sigma, shift.unit,
+               JudgementOf(shift));
   }
 }
 
@@ -54,11 +64,32 @@ void TellResiduals(const Verification& found) {
   }
 }
 
+void TellOutcome(const Verification& found) {
+  if (found.unassigned) {
+    fmt::print(
+        "the readings are not those of the calibration, and these positions do not tell which "
+        "shift makes them so\n");
+  }
+  const char* const outcome = found.outcome == VerifyOutcome::kPass   ? "pass"
+                              : found.outcome == VerifyOutcome::kFail ? "fail"
+                                                                      : "not verified";
+  fmt::print("{}: chance reaches {:.2f} sigmas\n", outcome, found.reach);
+  if (std::ranges::all_of(found.shifts, &ToolShift::told)) return;
+  fmt::print(
+      "what these positions do not tell to the budget is not verified: read inclinations on "
+      "either side of 90 deg and there, each at several azimuths and at toolfaces every 90 deg\n");
+}
+
 // Those that matter to readings at rest; where there is no default, the user must say.
 void AddBenchSigmas(CLI::App& command, ToolFitSetup& bench) {
   for (const BenchSigma& sigma : BenchSigmas()) {
-    const std::string_view of_others[] = {"latitude-sigma-deg", "seat-arcsec", "drift-deg-per-h",
-                                          "sigma-table-deg-per-h"};
+    const std::string_view of_others[] = {"latitude-sigma-deg",
+                                          "seat-arcsec",
+                                          "rate-scale-ppm",
+                                          "drift-deg-per-h",
+                                          "sigma-table-deg-per-h",
+                                          "second-order-ug-per-g2",
+                                          "anisoelastic-deg-per-h-per-g2"};
     if (std::find(std::begin(of_others), std::end(of_others), sigma.name) != std::end(of_others)) {
       continue;
     }
@@ -68,6 +99,7 @@ void AddBenchSigmas(CLI::App& command, ToolFitSetup& bench) {
 
 int Verify(VerifyOptions& o) {
   constexpr int kFailed = 4;
+  TakeGravity(o.bench);
   o.setup.bench.reference = o.bench.reference;
   const auto data = ReadBenchTable(o.bench.data);
   if (!data) return Unusable(data.fault());
@@ -77,8 +109,15 @@ int Verify(VerifyOptions& o) {
   if (!found) return Unusable(found.fault());
   TellShifts(*found);
   TellResiduals(*found);
-  fmt::print("{}: chance reaches {:.2f} sigmas\n", found->pass ? "pass" : "fail", found->reach);
-  return found->pass ? kDone : kFailed;
+  TellOutcome(*found);
+  if (found->outcome == VerifyOutcome::kFail && !o.bench.gravity_stated &&
+      tool->accel.n_channels > 0) {
+    fmt::print(
+        "gravity was taken for {:.6g} m/s2: where the calibration took another, say that one "
+        "(--gravity-mps2, or --gravity-g 1 for standard)\n",
+        o.bench.reference.gravity_mps2);
+  }
+  return found->outcome == VerifyOutcome::kPass ? kDone : kFailed;
 }
 
 }  // namespace
@@ -104,7 +143,7 @@ void AddCalibrateVerify(CLI::App& calibrate, int& exit_code) {
       "Example:\n  wellgyro calibrate verify --data found.csv --tool tool.toml --latitude-deg 60 "
       "\\\n"
       "      --sigma-deg-per-h 0.02 --sigma-accel 2e-5 --budget-bias-deg-per-h 0.05\n"
-      "Exit code 4: fail.");
+      "Exit code 4: fail, or not verified: these positions do not tell every shift.");
   OnCall(command, exit_code, [o] { return Verify(*o); });
 }
 

@@ -67,7 +67,6 @@ double WalkAtMost(const SourceHistory& source, double days) {
     known += std::pow(source.sigmas[k], 2);
   }
   const auto n = static_cast<double>(source.changes.size());
-  if (!(days > 0)) return 0;
   return std::max(0.0, squares * n / ChiSquareQuantile(NormalCdf(-1), n) - known) / days;
 }
 
@@ -112,7 +111,10 @@ ToolHistory HistoryOf(std::vector<const ToolCalibration*> tools, const HistorySe
     }
     source.walk_per_sqrt_day = days > 0 ? std::sqrt(std::max(0.0, excess) / days) : 0;
     const Eigen::Index at = last.At(source.name);
-    source.prior_sigma = std::sqrt(last.cov(at, at) + WalkAtMost(source, days) * setup.days_ahead);
+    if (days > 0) {
+      source.prior_sigma =
+          std::sqrt(last.cov(at, at) + WalkAtMost(source, days) * setup.days_ahead);
+    }
     source.shifted = !source.changes.empty() &&
                      std::abs(source.changes.back()) > history.reach * source.sigmas.back();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,10 +17,11 @@ struct SourceHistory {
   std::vector<double> changes;   ///< from each calibration to the next [SI]
   std::vector<double> sigmas;    ///< of the changes, by both calibrations' covariance [SI]
   double walk_per_sqrt_day = 0;  ///< what they ask for beyond that, as a random walk [SI]
-  double prior_sigma = 0;        ///< for a job so many days ahead, by a walk that the few changes
-                                 ///< do not exceed in five of six tools [SI]
-  bool shifted = false;          ///< the last change is beyond what chance reaches
-  bool out_of_family = false;    ///< it walks unlike the other tools
+  /// For a job so many days ahead, by a walk that the few changes do not exceed in five of six
+  /// tools [SI]; none from one calibration, which knows of no change.
+  std::optional<double> prior_sigma;
+  bool shifted = false;        ///< the last change is beyond what chance reaches
+  bool out_of_family = false;  ///< it walks unlike the other tools
 };
 
 struct ToolHistory {

@@ -12,21 +12,28 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Places of the columns of B that the others before them do not stand for, in order.
-std::vector<Index> Seen(const MatrixXd& B) {
+// Least squares of the columns of B by the eigenvectors of their information, of columns of unit
+// length: x, cov, told and rank. A shift with a part in the null space is not told, whatever value
+// the others would leave it.
+void SolveShifts(const MatrixXd& B, const VectorXd& e, ToolShiftEstimate& found) {
+  // Squared sine of the angle that leaves nothing to tell; squared part of a unit vector.
+  constexpr double kNull = 1e-6, kPart = 1e-6;
   const VectorXd scale = B.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const MatrixXd scaled = B * scale.asDiagonal();
-  const MatrixXd N = scaled.transpose() * scaled;
-  std::vector<Index> seen;
-  for (Index k = 0; k < N.cols(); ++k) {
-    std::vector<Index> with = seen;
-    with.push_back(k);
-    const Cholesky root(N(with, with));
-    if (root.positive() && std::pow(root.L().bottomRightCorner<1, 1>()(0), 2) > 1e-6) {
-      seen = std::move(with);
+  const SymmetricEigen eigen = EigenOfSymmetric(scaled.transpose() * scaled);
+  VectorXd inverse = VectorXd::Zero(B.cols()), null = inverse;
+  for (Index i = 0; i < B.cols(); ++i) {
+    if (eigen.values[i] > kNull) {
+      inverse[i] = 1 / eigen.values[i];
+      ++found.rank;
+    } else {
+      null += eigen.vectors.col(i).cwiseAbs2();
     }
   }
-  return seen;
+  for (const double part : null) found.told.push_back(part < kPart ? 1 : 0);
+  const MatrixXd V = scale.asDiagonal() * eigen.vectors;
+  found.cov = V * inverse.asDiagonal() * V.transpose();
+  found.x = found.cov * (B.transpose() * e);
 }
 
 }  // namespace
@@ -59,18 +66,15 @@ void ToolShiftEstimator::Reduce() {
 
 ToolShiftEstimate ToolShiftEstimator::Estimate() {
   Reduce();
-  const MatrixXd whole_B = rows_.block(common_, common_, shifts_, shifts_);
+  const MatrixXd B = rows_.block(common_, common_, shifts_, shifts_);
   const VectorXd e = rows_.block(common_, common_ + shifts_, shifts_, 1);
   const double beyond = std::pow(rows_(common_ + shifts_, common_ + shifts_), 2);
   ToolShiftEstimate found;
-  found.seen = Seen(whole_B);
-  const MatrixXd B = whole_B(Eigen::all, found.seen);
-  found.cov = InverseOfSymmetric(B.transpose() * B);
-  found.x = found.cov * (B.transpose() * e);
+  SolveShifts(B, e, found);
   found.chi_square = e.squaredNorm() + beyond;
   found.left = (e - B * found.x).squaredNorm() + beyond;
   found.dof = dof_;
-  const MatrixXd by_shifts = rows_.block(0, common_, common_, shifts_)(Eigen::all, found.seen);
+  const MatrixXd by_shifts = rows_.block(0, common_, common_, shifts_);
   found.common = rows_.topLeftCorner(common_, common_)
                      .triangularView<Eigen::Upper>()
                      .solve(rows_.block(0, common_ + shifts_, common_, 1) - by_shifts * found.x);

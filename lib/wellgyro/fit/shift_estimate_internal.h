@@ -7,9 +7,11 @@
 namespace wellgyro {
 
 struct ToolShiftEstimate {
-  std::vector<Eigen::Index> seen;  ///< shifts that the residuals tell apart, in order
-  Eigen::VectorXd x;               ///< of these
+  /// By shift: it has no part in any combination of shifts that the residuals say nothing of.
+  std::vector<char> told;
+  Eigen::VectorXd x;  ///< of all shifts; of those not told the solution of least norm
   Eigen::MatrixXd cov;
+  int rank = 0;            ///< combinations of shifts that the residuals tell
   Eigen::VectorXd common;  ///< mean of the common errors beside the shifts
   double chi_square = 0;   ///< of the residuals without shifts
   double left = 0;         ///< beside them

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -103,7 +104,7 @@ class Comparison {
     TakeKnown();
   }
 
-  std::vector<ToolShift>& shifts() { return shifts_; }
+  const std::vector<ToolShift>& shifts() const { return shifts_; }
 
   // In the shifts' units: of one shift in the channel's.
   double UnitOf(std::size_t k) const {
@@ -133,6 +134,22 @@ class Comparison {
     ToolShiftEstimate found = estimator.Estimate();
     bench = sigmas.cwiseProduct(found.common.tail<4>());
     return found;
+  }
+
+  // Root mean square of the readings over that of what the tool model foretells; of the gyros, or
+  // of the accelerometers.
+  double ReadOverForetold(bool gyros) const {
+    double read = 0, foretold = 0;
+    for (const ToolRow& row : readings_.rows) {
+      const Residuals r = Compare(row, Eigen::Vector4d::Zero());
+      for (Eigen::Index i = 0; i < r.e.size(); ++i) {
+        const int channel = row.channels[static_cast<std::size_t>(i)];
+        if (readings_.channels[static_cast<std::size_t>(channel)].is_gyro != gyros) continue;
+        read += row.v[i] * row.v[i];
+        foretold += std::pow(row.v[i] - r.e[i], 2);
+      }
+    }
+    return std::sqrt(read / foretold);
   }
 
  private:
@@ -230,6 +247,23 @@ std::optional<Fault> Unlike(const BenchTable& data, const ToolReadings& readings
       1, FaultCode::kConflict);
 }
 
+// g and m/s2 are 9.8 apart, deg/h and deg/s 3600; no sensor in service is so far off.
+std::optional<Fault> OtherUnit(const BenchTable& data, const ToolReadings& readings,
+                               const Comparison& comparison) {
+  constexpr double kAccel = 3, kGyro = 50;
+  for (const bool gyros : {false, true}) {
+    if ((gyros ? readings.n_gyro : readings.n_accel) == 0) continue;
+    const double ratio = comparison.ReadOverForetold(gyros), most = gyros ? kGyro : kAccel;
+    if (!(ratio > most) && !(ratio < 1 / most)) continue;
+    return BenchFault(data,
+                      fmt::format("the {} read {:.3g} times what the calibration foretells: give "
+                                  "them in the unit that the tool was calibrated in, as {}",
+                                  gyros ? "gyros" : "accelerometers", ratio,
+                                  gyros ? "deg/h and not deg/s" : "g and not m/s2"));
+  }
+  return std::nullopt;
+}
+
 std::optional<Fault> RateTable(const BenchTable& data) {
   if (!data.Find("rate_deg_s")) return std::nullopt;
   return BenchFault(data, "it is a rate table: verify takes positions read at rest", 1,
@@ -266,6 +300,44 @@ std::optional<std::pair<double, double>> Beyond(const ToolReadings& readings,
   return std::nullopt;
 }
 
+// What a survey needs to know of a shift where no budget is stated, 1-sigma [the shift's unit].
+double MatterOf(const ToolShift& shift) {
+  constexpr double kGyro = kCoarseShare * kBenchEarthRate / units::kDegPerHour, kAccel = 2e-3;
+  return shift.name.rfind("accel", 0) == 0 ? kAccel : kGyro;
+}
+
+// All shifts against chance and their budgets, and what they come to.
+void TakeShifts(const std::vector<ToolShift>& shifts, const ToolShiftEstimate& found,
+                double false_alarm, Verification& out) {
+  const auto n_told = std::count(found.told.begin(), found.told.end(), 1);
+  out.reach = -NormalQuantile(false_alarm / 2 / std::max(1.0, static_cast<double>(n_told)));
+  bool told = true, within = true, shifted = false, budgets = false;
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    ToolShift shift = shifts[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    const bool apart = found.told[i] != 0;
+    shift.sigma = apart ? std::sqrt(found.cov(at, at)) : std::numeric_limits<double>::infinity();
+    shift.value = apart ? found.x[at] : 0;
+    shift.told = shift.sigma <= (shift.limit > 0 ? shift.limit / 3 : MatterOf(shift));
+    shift.shifted = std::abs(shift.value) > out.reach * shift.sigma;
+    // What is not told to its budget is beyond it only where chance does not reach so far.
+    shift.within = shift.limit > 0
+                       ? std::abs(shift.value) <= shift.limit || !(shift.told || shift.shifted)
+                       : !shift.shifted;
+    told = told && shift.told;
+    within = within && shift.within;
+    shifted = shifted || shift.shifted;
+    budgets = budgets || shift.limit > 0;
+    out.shifts.push_back(std::move(shift));
+  }
+  out.unassigned = !told && !shifted && found.rank > 0 &&
+                   1 - ChiSquareCdf(out.chi_square - out.left, found.rank) < false_alarm;
+  const bool fail = !out.fits || !within || (out.unassigned && !budgets);
+  out.outcome = fail   ? VerifyOutcome::kFail
+                : told ? VerifyOutcome::kPass
+                       : VerifyOutcome::kNotVerified;
+}
+
 }  // namespace
 
 Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
@@ -280,6 +352,7 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
   if (auto fault = Unlike(data, *readings, tool)) return *fault;
   if (auto fault = WithoutTemperature(data, tool)) return *fault;
   Comparison comparison(*readings, tool, setup);
+  if (auto fault = OtherUnit(data, *readings, comparison)) return *fault;
   ToolShiftEstimate found;
   Eigen::Vector4d bench = Eigen::Vector4d::Zero();
   // A tilt of a third of a degree acts on the force to the second order, by 1e-5 of it.
@@ -290,21 +363,10 @@ Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& t
   out.chi_square = found.chi_square;
   out.dof = found.dof;
   out.probability = 1 - ChiSquareCdf(out.chi_square, out.dof);
-  out.left_dof = found.dof - static_cast<int>(found.seen.size());
+  out.left_dof = found.dof - found.rank;
   out.left = found.left;
   out.fits = out.left_dof <= 0 || 1 - ChiSquareCdf(out.left, out.left_dof) > kMisfit;
-  out.pass = out.fits;
-  out.reach = -NormalQuantile(setup.false_alarm / 2 / static_cast<double>(found.seen.size()));
-  for (std::size_t i = 0; i < found.seen.size(); ++i) {
-    ToolShift shift = comparison.shifts()[static_cast<std::size_t>(found.seen[i])];
-    const auto at = static_cast<Eigen::Index>(i);
-    shift.value = found.x[at];
-    shift.sigma = std::sqrt(found.cov(at, at));
-    shift.shifted = std::abs(shift.value) > out.reach * shift.sigma;
-    shift.within = shift.limit > 0 ? std::abs(shift.value) <= shift.limit : !shift.shifted;
-    out.pass = out.pass && shift.within;
-    out.shifts.push_back(std::move(shift));
-  }
+  TakeShifts(comparison.shifts(), found, setup.false_alarm, out);
   return out;
 }
 

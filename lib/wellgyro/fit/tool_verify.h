@@ -30,7 +30,14 @@ struct ToolShift {
   double limit = 0;             ///< three times the budget; 0: none
   bool shifted = false;         ///< beyond what chance reaches
   bool within = true;           ///< of the budget
+  /// The positions tell it to its budget, sigma no larger than one of these. Without a budget, to
+  /// what matters to a survey: 2 % of the Earth's rate (per g), 2e-3 of gravity, a tenth of a
+  /// degree of inclination. What they do not tell from other shifts has an infinite sigma.
+  bool told = true;
 };
+
+/// A tool is not known to be sound because nothing shows where it was not looked at.
+enum class VerifyOutcome { kPass, kNotVerified, kFail };
 
 struct Verification {
   std::vector<ToolShift> shifts;
@@ -43,7 +50,11 @@ struct Verification {
   /// False: what is beside the shifts is larger than chance has it in one of 1000 tools. Something
   /// else than a bias or a force term is wrong, of the tool, the bench or what was stated of them.
   bool fits = true;
-  bool pass = true;  ///< fits, and everything within its budget; without budgets, nothing shifted
+  /// The residuals ask for shifts, and the positions do not tell for which.
+  bool unassigned = false;
+  /// kPass: fits, and everything is told and within its budget, without budgets not shifted.
+  /// kNotVerified: so is all that is told. kFail: anything else.
+  VerifyOutcome outcome = VerifyOutcome::kPass;
   /// Lowest and highest temperature of the readings where the calibration was made for neither,
   /// which it then takes for its nearest [degC].
   std::optional<std::pair<double, double>> beyond;
@@ -52,8 +63,8 @@ struct Verification {
 /// A tool against its calibration, as found or as left: a table of positions (columns as FitTool's)
 /// read at rest. Biases and force terms are estimated as shifts from the tool model, by generalised
 /// least squares: in the covariance are the readings' noise and wobble, level, north and zero of
-/// inclination of the bench, and the calibration's own whole covariance. Shifts that these
-/// positions cannot tell from the others are not listed. Throws std::invalid_argument without the
+/// inclination of the bench, and the calibration's own whole covariance. All shifts are listed;
+/// those that these positions cannot tell are not told. Throws std::invalid_argument without the
 /// sigmas.
 WELLGYRO_EXPORT Result<Verification> VerifyTool(const BenchTable& data, const ToolCalibration& tool,
                                                 const VerifySetup& setup);
