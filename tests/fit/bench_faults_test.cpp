@@ -316,6 +316,27 @@ TEST(BenchFaults, AWrongDipOrLatitudeIsToldByTheStations) {
   EXPECT_LE(tally.sound(), 2);
 }
 
+// A dip 0.2 deg off scattered the magnetometers' residuals from 20 to 100 nT, and nothing was said.
+TEST(BenchFaults, AWrongDipOrDeclinationIsToldByTheAttitudes) {
+  Random random(157);
+  Tally tally;
+  for (int bench = 0; bench < kEach; ++bench) {
+    const Field field;
+    const BenchTable data = AtAttitudes(VectorTool::Any(random), 48, field, {2e-5, 20}, random);
+    AffineSetup setup;
+    setup.reference.field = field.nt;
+    setup.reference.dip = field.dip * kRad;
+    tally.CountSound(FitAffine(data, setup), "the readings suit a d");
+    setup.reference.dip = (field.dip + 0.2) * kRad;
+    tally.Count(FitAffine(data, setup), "the readings suit a dip -0.");
+    setup.reference.dip = field.dip * kRad;
+    setup.reference.declination = 0.5 * kRad;
+    tally.Count(FitAffine(data, setup), "the readings suit a declination -0.");
+  }
+  EXPECT_EQ(tally.wrong(), 2 * kEach);
+  EXPECT_LE(tally.sound(), 2);
+}
+
 TEST(BenchFaults, TemperaturesThatPlayNoPartAreTold) {
   Random random(16);
   BenchTable data = AtAttitudes(VectorTool::Any(random), 48, {}, {2e-5, 20}, random);
@@ -394,6 +415,25 @@ TEST(BenchFaults, AWrongLatitudeIsToldByWhatAllChannelsRead) {
                                                          "suit 4")));
   EXPECT_THAT(FitGyro(data, {}, {.reference = {.latitude = 45 * kRad}})->report.remarks,
               Not(Contains(HasSubstr("latitude is wrong"))));
+}
+
+// Of a straight line the knee that suits noise best was given, with a sigma.
+TEST(BenchFaults, AKneeThatIsNotThereIsNotFound) {
+  Random random(24);
+  int found = 0;
+  constexpr int kBenches = 100;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    TableMaker table({"t_m", "ref1", "ref2"});
+    for (int i = 0; i < 40; ++i) {
+      const double t = 25 + 4.5 * i, truth = t + 0.4 - 0.003 * t;
+      table.Add({t, truth + 0.03 * random.Normal(), truth + 0.03 * random.Normal()});
+    }
+    const auto fitted = FitThermometer(table.Finish(), {.knee = 175, .fit_knee = true});
+    found += fitted.has_value() ? 1 : 0;
+    if (!fitted) EXPECT_NE(fitted.fault().text.find("no knee is found"), std::string::npos);
+  }
+  // P = 1e-3 of one place, times the places that are as good as independent: some ten.
+  EXPECT_LE(found, 5);
 }
 
 TEST(BenchFaults, AKneeThatWasFoundHasASigma) {

@@ -111,14 +111,27 @@ std::optional<Fault> BadTable(const BenchTable& data, const AttitudeTable& table
   return BadReadings(data, table);
 }
 
-// S du/dI of each group and position, about the solution.
-std::vector<Eigen::MatrixX3d> ByZero(AttitudeTable table, const AffineSetup& setup,
-                                     const Eigen::VectorXd& x) {
-  constexpr double kStep = 1e-4;  // rad: to 2e-9 of du/dI
-  table.inclination.array() += kStep;
-  const std::vector<AffineReadings> above = Groups(table, setup);
-  table.inclination.array() -= 2 * kStep;
-  const std::vector<AffineReadings> below = Groups(table, setup);
+// What the references and the stand's zeros are off by [rad].
+struct Change {
+  double inclination = 0, dip = 0, declination = 0;
+};
+
+std::vector<AffineReadings> GroupsAt(AttitudeTable table, AffineSetup setup, const Change& change) {
+  table.inclination.array() += change.inclination;
+  if (setup.reference.dip) *setup.reference.dip += change.dip;
+  setup.reference.declination += change.declination;
+  return Groups(table, setup);
+}
+
+// S du/dp of each group and position, about the solution, p along `unit` [a degree].
+std::vector<Eigen::MatrixX3d> By(const AttitudeTable& table, const AffineSetup& setup,
+                                 const Change& unit, const Eigen::VectorXd& x) {
+  constexpr double kStep = 1e-4;  // rad: to 2e-9 of du/dp
+  const auto at = [&](double step) {
+    return GroupsAt(table, setup,
+                    {step * unit.inclination, step * unit.dip, step * unit.declination});
+  };
+  const std::vector<AffineReadings> above = at(kStep), below = at(-kStep);
   std::vector<Eigen::MatrixX3d> all;
   int first = 0;
   for (std::size_t g = 0; g < above.size(); ++g) {
@@ -128,6 +141,7 @@ std::vector<Eigen::MatrixX3d> ByZero(AttitudeTable table, const AffineSetup& set
   }
   return all;
 }
+constexpr Change kZero{.inclination = 1};
 
 // The groups' readings, one problem, and what it comes to.
 struct FittedAffine {
@@ -137,18 +151,38 @@ struct FittedAffine {
 };
 
 // A stand whose zero of inclination is off moves every u by du/dI, of which a bias takes the mean
-// and nothing else has the pattern.
-AddedTerm ZeroOf(const FittedAffine& fitted, const AttitudeTable& table, const AffineSetup& setup) {
-  const std::vector<Eigen::MatrixX3d> by_zero = ByZero(table, setup, fitted.solution.x);
-  const auto width = 3 * static_cast<Eigen::Index>(by_zero.size());
+// and nothing else has the pattern; a wrong dip or declination moves the field's by another.
+AddedTerm TermOf(const FittedAffine& fitted, const AttitudeTable& table, const AffineSetup& setup,
+                 const Change& unit, double probability) {
+  const std::vector<Eigen::MatrixX3d> by = By(table, setup, unit, fitted.solution.x);
+  const auto width = 3 * static_cast<Eigen::Index>(by.size());
   Eigen::MatrixXd z = Eigen::MatrixXd::Zero(fitted.problem.y.size(), 1);
-  for (std::size_t g = 0; g < by_zero.size(); ++g) {
-    for (Eigen::Index i = 0; i < by_zero[g].rows(); ++i) {
-      z.block<3, 1>(i * width + 3 * static_cast<Eigen::Index>(g), 0) =
-          by_zero[g].row(i).transpose();
+  for (std::size_t g = 0; g < by.size(); ++g) {
+    for (Eigen::Index i = 0; i < by[g].rows(); ++i) {
+      z.block<3, 1>(i * width + 3 * static_cast<Eigen::Index>(g), 0) = by[g].row(i).transpose();
     }
   }
-  return AddedTerms(fitted.problem, fitted.solution).Test(z, kFalseAlarm / 2).front();
+  return AddedTerms(fitted.problem, fitted.solution).Test(z, probability).front();
+}
+
+// The likelier of a wrong dip and a wrong declination, of magnetometers.
+void TellField(const FittedAffine& fitted, const AttitudeTable& table, const AffineSetup& setup,
+               FitReport& report) {
+  const bool mag = std::any_of(fitted.groups.begin(), fitted.groups.end(),
+                               [](const AffineReadings& group) { return group.suffix == "M"; });
+  if (!mag) return;
+  constexpr double kEach = kFalseAlarm / 2 / 2;
+  const AddedTerm dip = TermOf(fitted, table, setup, {.dip = 1}, kEach);
+  const AddedTerm declination = TermOf(fitted, table, setup, {.declination = 1}, kEach);
+  const bool of_dip = dip.sigmas >= declination.sigmas;
+  const AddedTerm& worst = of_dip ? dip : declination;
+  if (!(worst.sigmas > worst.limit)) return;
+  report.remarks.push_back(fmt::format(
+      "the readings suit a {} {:+.3g} deg beside the one given ({:.1f} sigmas, chance reaches "
+      "{:.1f}): the reference is wrong; with a term for it {} would move by {:.1f} of its sigmas "
+      "({})",
+      of_dip ? "dip" : "declination", worst.coefficient, worst.sigmas, worst.limit, worst.moved,
+      worst.moved_sigmas, of_dip ? "--dip-deg" : "--declination-deg"));
 }
 
 FittedAffine Fitted(const AttitudeTable& table, const AffineSetup& setup,
@@ -170,7 +204,7 @@ FittedAffine WithZero(AttitudeTable& table, const AffineSetup& setup, FittedAffi
   constexpr double kStill = 1e-9;  // deg, of a sigma of 1e-4 and more
   for (int turn = 0; turn < 20; ++turn) {
     std::vector<AffineReadings> groups = Groups(table, setup);
-    std::vector<Eigen::MatrixX3d> by_zero = ByZero(table, setup, fitted.solution.x);
+    std::vector<Eigen::MatrixX3d> by_zero = By(table, setup, kZero, fitted.solution.x);
     for (std::size_t g = 0; g < groups.size(); ++g) groups[g].by_zero = std::move(by_zero[g]);
     fitted = Fitted(table, setup, std::move(groups));
     const double more = fitted.solution.x.tail<1>()[0];
@@ -227,7 +261,7 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   std::vector<AffineReadings> groups = Groups(*table, setup);
   if (groups.empty()) throw std::invalid_argument("the magnetometers need the field and its dip");
   FittedAffine fitted = Fitted(*table, setup, std::move(groups));
-  const AddedTerm told = ZeroOf(fitted, *table, setup);
+  const AddedTerm told = TermOf(fitted, *table, setup, kZero, kFalseAlarm / 2);
   double zero = 0;
   const bool off = told.sigmas > told.limit;
   if (off) fitted = WithZero(*table, setup, std::move(fitted), zero);
@@ -240,6 +274,7 @@ Result<BenchCalibration> FitAffine(const BenchTable& data, const AffineSetup& se
   if (auto fault = TakeGroups(data, *table, setup, fitted.groups, out)) return *fault;
   RemarkTemperature(data, out.report);
   if (off) TakeZero(told, zero, out.report);
+  TellField(fitted, *table, setup, out.report);
   if (table->mag.rows() > 0 && out.mag.n_channels == 0) {
     out.report.remarks.emplace_back(
         "the magnetometers are left out: they need the field and its dip (--field-nt, --dip-deg)");

@@ -13,6 +13,7 @@
 #include "wellgyro/fit/least_squares_internal.h"
 #include "wellgyro/math/golden_section.h"
 #include "wellgyro/math/median.h"
+#include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
 namespace {
@@ -117,6 +118,20 @@ double FindKnee(const ThermometerReadings& readings, const ThermometerFitSetup& 
   return GoldenSection(best - step, best + step, cost, goes_on);
 }
 
+// A knee without a bend behind it is found anywhere: its place has no meaning where c2 is no larger
+// than chance makes the likeliest of many places, P(|t| > limit) = 1e-3 of one.
+std::optional<Fault> NoKnee(const BenchTable& data, const FitReport& report) {
+  if (report.cov.size() == 0) return std::nullopt;
+  const double sigma = std::sqrt(std::max(0.0, report.cov(2, 2)));
+  const double limit = report.sigma_given ? -NormalQuantile(5e-4) : StudentLimit(5e-4, report.dof);
+  if (std::abs(report.values[2]) > limit * sigma) return std::nullopt;
+  return BenchFault(data,
+                    fmt::format("no knee is found: beyond {:.4g} degC the readings bend by c[2] = "
+                                "{:.2g} +- {:.2g}; leave --fit-knee out",
+                                report.values[3], report.values[2], sigma),
+                    data.lines[0]);
+}
+
 void Remark(const ThermometerReadings& readings, double knee, bool bends, FitReport& report) {
   if (!bends) {
     report.remarks.push_back(fmt::format(
@@ -156,6 +171,9 @@ Result<BenchCalibration> FitThermometer(const BenchTable& data, const Thermomete
   FitReport& report = out.report;
   report.method = "thermometer";
   if (auto fault = DoesNotFit(data, {{"t_m", hottest - coldest}}, report)) return *fault;
+  if (found) {
+    if (auto fault = NoKnee(data, report)) return *fault;
+  }
   std::vector<std::string> names = VectorNames("c", 3);
   if (found) names.emplace_back("knee_C");
   Reparametrise(report, names, [&names](const Eigen::VectorXd& c) {
