@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/record/sample.h"
 
@@ -69,13 +70,14 @@ CLI::Option* AddSigma(CLI::App& command, const BenchSigma& sigma, ToolFitSetup& 
 
 void AddGravity(CLI::App& command, BenchOptions& o) {
   BenchReference& r = o.reference;
-  CLI::Option* const in_g =
-      AddReference(command, o, "--gravity-g", "local gravity; readings are in g (default 1)",
-                   Within(0.97, 1.03), [&r, &o](double g) {
-                     o.gravity_stated = true;
-                     r.gravity = g;
-                     r.gravity_mps2 = g * units::kStandardGravity;
-                   });
+  CLI::Option* const in_g = AddReference(command, o, "--gravity-g",
+                                         "local gravity; readings are in g (default: normal at "
+                                         "the latitude, without one 1)",
+                                         Within(0.97, 1.03), [&r, &o](double g) {
+                                           o.gravity_stated = true;
+                                           r.gravity = g;
+                                           r.gravity_mps2 = g * units::kStandardGravity;
+                                         });
   AddReference(command, o, "--gravity-mps2", "local gravity; readings are in m/s2",
                Within(9.5, 10.1),
                [&r, &o](double g) {
@@ -142,7 +144,13 @@ void AddTool(CLI::App& command, BenchOptions& o) {
   add(command.add_option("--expires", o.expires, "when it does, as 2026-07-31"));
 }
 
+void TakeGravity(BenchOptions& o) {
+  if (o.gravity_stated || !o.reference.latitude) return;
+  o.reference.gravity_mps2 = SiteAt(*o.reference.latitude, 0).gravity;
+}
+
 void Complete(BenchOptions& o) {
+  TakeGravity(o);
   const NamedFile files[] = {
       {"--data", o.data}, {"the readings to join", o.joined}, {"--out", o.out}, {"--tool", o.tool}};
   RequireDistinct(files);

@@ -69,6 +69,10 @@ void AddTool(CLI::App& command, BenchOptions& o);
 CLI::Option* AddSigma(CLI::App& command, const BenchSigma& sigma, ToolFitSetup& setup,
                       std::string_view otherwise);
 
+/// Where gravity is not stated and the latitude is: normal gravity there at sea level, to 1e-3 of
+/// it for 3 km of height; readings are in that.
+void TakeGravity(BenchOptions& o);
+
 /// What follows from the options together; throws std::invalid_argument where they contradict each
 /// other.
 void Complete(BenchOptions& o);

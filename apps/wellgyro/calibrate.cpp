@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "wellgyro/base/units.h"
 #include "wellgyro/calibration/tool_update.h"
 #include "wellgyro/io/atomic_file.h"
 #include "wellgyro/io/sensor/bench_data.h"
@@ -45,7 +46,21 @@ Result<std::string> ToolText(const BenchOptions& o, const BenchCalibration& cali
   return ToolToml(Updated(std::move(tool), calibration, o.update));
 }
 
-std::optional<Fault> RunMethod(BenchOptions& o, const BenchMethod& method) {
+// What nobody stated is in the result all the same.
+void RecordGravity(const BenchOptions& o, CalibrationFile& file) {
+  if (o.gravity_stated) return;
+  const double g = o.reference.gravity_mps2;
+  const bool normal = g != units::kStandardGravity;
+  file.references.push_back(fmt::format("gravity {:.6g} m/s2 ({}, default)", g,
+                                        normal ? "normal at the latitude" : "standard"));
+  if (normal) return;
+  file.report.remarks.push_back(fmt::format(
+      "gravity is taken for standard, {:.6g} m/s2: from equator to pole it is 9.78 to 9.83, and "
+      "sensitivities are wrong by as much (--gravity-mps2, or --gravity-g)",
+      g));
+}
+
+std::optional<Fault> RunMethod(BenchOptions& o, const BenchMethod& method, bool takes_gravity) {
   Complete(o);
   CalibrationFile file;
   file.program = "wellgyro " WELLGYRO_VERSION;
@@ -57,6 +72,8 @@ std::optional<Fault> RunMethod(BenchOptions& o, const BenchMethod& method) {
   Result<BenchOutcome> outcome = method.fit(*data, *joined, o);
   if (!outcome) return outcome.fault();
   file.report = outcome->calibration.report;
+  // A fixture that says what it applies (axb, ayb, azb) stands in place of gravity.
+  if (takes_gravity && !data->Find("axb")) RecordGravity(o, file);
   file.check = outcome->check;
   // What cannot be written is told before anything is.
   std::vector<OutputFile> files = {{o.out, CalibrationToml(file)}};
@@ -81,7 +98,9 @@ void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchO
   command->footer(
       fmt::format("Example:\n  wellgyro calibrate {0} --data bench.csv --out {0}.toml{1}{2}",
                   method.name, *method.needs ? " \\\n     " : "", method.needs));
-  OnCall(command, exit_code, [o, &method] { return Concluded(RunMethod(*o, method)); });
+  const bool takes_gravity = command->get_option_no_throw("--gravity-g") != nullptr;
+  OnCall(command, exit_code,
+         [o, &method, takes_gravity] { return Concluded(RunMethod(*o, method, takes_gravity)); });
 }
 
 }  // namespace
