@@ -72,6 +72,17 @@ std::optional<Fault> Shared(const ToolFitOptions& o, const ToolCalibration& prio
   return std::nullopt;
 }
 
+std::optional<Fault> OfAnother(const ToolFitOptions& o, const ToolCalibration& prior,
+                               const ToolCalibration& tool) {
+  const std::string &theirs = prior.asset_serial, &ours = tool.asset_serial;
+  if (theirs.empty() || ours.empty() || theirs == ours) return std::nullopt;
+  return Fault{.code = FaultCode::kConflict,
+               .text = fmt::format("it is of tool {}, and this bench of {}: give the file of the "
+                                   "same tool, or mend --asset-serial",
+                                   theirs, ours),
+               .source = o.prior};
+}
+
 // What was known before must not contradict the bench more than once in a thousand, nor agree with
 // it as only the same readings do.
 std::optional<Fault> Unlikely(const ToolFitOptions& o, const JoinedTool& joined) {
@@ -118,6 +129,7 @@ Result<Calibrated> WithPrior(const ToolFitOptions& o, Calibrated tool, Calibrati
   if (!text) return text.fault();
   const auto prior = ParseTool(*text, o.prior);
   if (!prior) return prior.fault();
+  if (auto fault = OfAnother(o, *prior, tool.tool)) return *std::move(fault);
   if (auto fault = Shared(o, *prior, file.inputs)) return *std::move(fault);
   JoinedTool joined = JoinPrior(tool.tool, *prior);
   if (auto fault = Unlikely(o, joined)) return *std::move(fault);
@@ -170,7 +182,8 @@ void AddSamples(const Calibrated& found, const ToolFit& fit, Certificate& certif
   }
 }
 
-// What the readings say of the bench, and of drift through a table, apart from the tool's result.
+// What the readings say of the bench, of their own scatter and of drift through a table, apart from
+// the tool's result.
 void MoveBench(const ToolFit& fit, Certificate& certificate) {
   std::vector<Certificate::Line>& result = certificate.result;
   for (const BenchNuisance& nuisance : fit.nuisances) {
@@ -183,16 +196,16 @@ void MoveBench(const ToolFit& fit, Certificate& certificate) {
       line = std::move(*found);
       result.erase(found);
     }
-    line.unit = "deg";
-    line.Scale(ToDegrees(1));
+    line.unit = nuisance.unit == "rad" ? "deg" : nuisance.unit;
+    if (nuisance.unit == "rad") line.Scale(ToDegrees(1));
     certificate.bench.push_back(std::move(line));
   }
-  const auto is_drift = [](const Certificate::Line& line) {
-    return line.name.find("_drift_") != std::string::npos;
+  const auto of_bench = [](const Certificate::Line& line) {
+    return line.name.find("_drift_") != std::string::npos || line.name.rfind("sigma_", 0) == 0;
   };
   std::copy_if(certificate.result.begin(), certificate.result.end(),
-               std::back_inserter(certificate.bench), is_drift);
-  std::erase_if(certificate.result, is_drift);
+               std::back_inserter(certificate.bench), of_bench);
+  std::erase_if(certificate.result, of_bench);
 }
 
 // Its terms left out have a list of their own.
@@ -263,6 +276,17 @@ std::optional<Fault> WithoutPlace(const ToolFitOptions& o) {
   return complaint ? std::optional(Fault{.text = *complaint}) : std::nullopt;
 }
 
+// What the names of terms stand for, on paper and in the file.
+void NameTau(const ToolFit& fit, CalibrationFile& file) {
+  const SensorGroup& group =
+      fit.calibration.gyro.n_channels > 0 ? fit.calibration.gyro : fit.calibration.accel;
+  if (group.thermometer < 0) return;
+  file.references.push_back(
+      fmt::format("tau = (T - {:.6g} degC) / {:.6g} degC: of it the terms _tau1, _tau2, _tau3 are "
+                  "the first, second and third power",
+                  group.reference, group.half_range));
+}
+
 std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   Complete(o.bench);
   RequireOthers(o);
@@ -276,6 +300,7 @@ std::optional<Fault> RunToolFit(ToolFitOptions& o) {
   const auto fit = FitTool(*tables, o.fit);
   if (!fit) return fit.fault();
   file.report = fit->calibration.report;
+  NameTau(*fit, file);
   const auto tool = ToolOf(o, *fit, file);
   if (!tool) return tool.fault();
   fmt::print("{}", CalibrationSummary(file));

@@ -322,7 +322,8 @@ class Calibrate(FreshProgramTest):
                         "--tool", tool, "--certificate", page, "--traceability",
                         "rate table <RT-5>", "--certificate-number", "C-17", "--laboratory",
                         "Bench 2", "--asset-serial", "A&7", "--date", "2026-01-31")
-        self.assertIn("gyro_M[0]", ran.stdout + self.Read(self.Path("c.toml")))
+        adjusted = ran.stdout
+        self.assertIn("gyro_M[0]", adjusted + self.Read(self.Path("c.toml")))
         for name in (tool, self.Path("c.toml")):
             self.Done("check", name)
         html = self.Read(page)
@@ -331,7 +332,8 @@ class Calibrate(FreshProgramTest):
             self.assertIn(word, html)
         # What was known of the bench before, stated or not, on paper and in the file.
         for word in ("gravity-mps2 9.8195 (stated)", "level-deg 0.5 (1 sigma, default)",
-                     "seat-arcsec 60 (1 sigma, default)", "sigma-accel found from the readings",
+                     "seat-arcsec 60 (1 sigma, default)",
+                     "rate-scale-ppm 100 (1 sigma, default)", "sigma-accel found from the readings",
                      "max-degree 3 (default)"):
             self.assertIn(f"<li>{word}</li>", html)
             self.assertIn(word, self.Toml("c.toml")["references"])
@@ -360,6 +362,17 @@ class Calibrate(FreshProgramTest):
         self.assertEqual(ran.returncode, 4, ran.stdout)
         self.assertIn("gyro_b[0]", ran.stdout)
         self.assertIn("shifted", ran.stdout)
+        # A prior of another tool; one calibration, which knows of no change.
+        ran = Run("calibrate", "tool", "--data", moved, "--data", table, "--latitude-deg",
+                  str(LATITUDE), "--out", self.Path("other.toml"), "--tool",
+                  self.Path("other_tool.toml"), "--asset-serial", "B", "--prior", tool)
+        self.assertEqual(ran.returncode, 2, ran.stdout)
+        self.assertIn("it is of tool A&7, and this bench of B", ran.stderr)
+        row = next(x for x in self.Done("calibrate", "history", "--tool", tool).stdout.splitlines()
+                   if "gyro_bias_y" in x).split(",")
+        self.assertEqual(row[3:], ["1", "", "", "", "", "one calibration: no change is known"])
+        self.assertIn("sigma_gyro_deg_per_h", html)
+        self.assertIn("sigma_gyro_deg_per_h = 0.0", adjusted)
         later = self.Path("later.toml")
         self.Done("calibrate", "tool", "--data", moved, "--data", table, "--latitude-deg",
                   str(LATITUDE), "--gravity-mps2", "9.8195", "--out", self.Path("c2.toml"),

@@ -66,6 +66,7 @@ struct ThermalBench {
   double latitude_error = 0;  ///< true less stated [rad]
   Eigen::Vector3d level[2];   ///< turn of each positions' table: about north, east, down [rad]
   Eigen::Vector2d seat[3];    ///< of the tool on the rate table, by axis [rad]
+  double rate_scale = 0;      ///< by how much more the rate table turns than it says
   Eigen::Vector4d drift[3];   ///< from the middle to the end of a table [deg/h]
   /// Of t^2 - 1/3 beside it, t from -1 to 1 over the table [deg/h].
   Eigen::Vector4d bend[3] = {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero(),
@@ -150,7 +151,8 @@ inline BenchTable ThermalRates(const ThermalTool& tool, const ThermalBench& benc
       n[(axis + 1) % 3] = bench.seat[axis][0];
       n[(axis + 2) % 3] = bench.seat[axis][1];
       n = TurnBy(-Noise(random, bench.wobble)) * n.normalized();
-      Eigen::Vector4d m = tool.Gyro((3600 * rate + up) * n, n, (T - 87.5) / 62.5, 0);
+      Eigen::Vector4d m =
+          tool.Gyro(((1 + bench.rate_scale) * 3600 * rate + up) * n, n, (T - 87.5) / 62.5, 0);
       m += bench.DriftAt(2, -1 + 2.0 * count / 17);
       for (double& channel : m) channel += bench.sigma_table * random.Normal();
       std::vector<double> row = {60.0 * count++, T, double(axis), rate};
@@ -211,6 +213,7 @@ inline std::map<std::string, double> TruthOf(const ThermalTool& tool, const Ther
     put(name, 0, bench.seat[axis][0]);
     put(name, 1, bench.seat[axis][1]);
   }
+  truth["rate_scale_3"] = bench.rate_scale;
   truth["latitude"] = bench.latitude_error;
   return truth;
 }

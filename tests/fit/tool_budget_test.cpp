@@ -64,7 +64,7 @@ TEST(ToolBudget, ContributionsAddUpToTheCovariance) {
     ASSERT_EQ(budget.contributions.rows(), report.cov.rows());
     EXPECT_THAT(budget.sources,
                 testing::ElementsAre("readings", "level", "north", "inclination", "seat",
-                                     "latitude", "drift", "terms left out"));
+                                     "rate scale", "latitude", "drift", "terms left out"));
     EXPECT_EQ(budget.n_type_a, 1);
     double largest = 0;
     for (Eigen::Index k = 0; k < report.cov.rows(); ++k) {
@@ -120,6 +120,7 @@ ToolFitSetup AllStated() {
   setup.sigma_inclination = 2e-6;
   setup.sigma_latitude = 1e-4;
   setup.sigma_axis = 3e-5;
+  setup.sigma_rate_scale = 3e-6;
   setup.sigma_wobble = 1e-5;
   setup.sigma_accel = 2e-5;
   setup.sigma_gyro = 0.02;
@@ -145,6 +146,7 @@ std::vector<Push> PushesOf(StillBench& b, const ToolFitSetup& setup) {
           {"north", {{"north_1", level + 2}}, setup.sigma_north},
           {"inclination", {{"inclination_1", &b.inclination}}, setup.sigma_inclination},
           {"latitude", {{"latitude", &b.bench.latitude_error}}, setup.sigma_latitude},
+          {"rate scale", {{"rate_scale_2", &b.bench.rate_scale}}, setup.sigma_rate_scale},
           seat};
 }
 

@@ -31,7 +31,10 @@ struct Bench {
 /// `walk`: by which drifts bend, as the fit takes them to; null: they are straight.
 Bench AnyBench(Random& random, Random* walk = nullptr) {
   Bench b{ThermalTool::Any(random), ThermalBench::Any(random), {}};
-  if (walk != nullptr) b.bench.Bend(*walk);
+  if (walk != nullptr) {
+    b.bench.Bend(*walk);
+    b.bench.rate_scale = ToolFitSetup().sigma_rate_scale * walk->Normal();
+  }
   b.tables.push_back(ThermalPositions(b.tool, b.bench, 0, 120, 25, 150, random));
   b.tables.push_back(ThermalPositions(b.tool, b.bench, 1, 60, 150, 25, random));
   b.tables.push_back(ThermalRates(b.tool, b.bench, 87.5, random));

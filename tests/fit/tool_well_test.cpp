@@ -60,6 +60,7 @@ Result<ToolCalibration> CalibratedOn(const BenchQuality& quality, const ThermalT
   setup.sigma_level = 0.3 * kRad;
   setup.sigma_north = 0.5 * kRad;
   setup.sigma_axis = 1.5e-4;
+  setup.sigma_rate_scale = 1e-6;  // the simulated table turns as it says
   const auto fit = FitTool(tables, setup);
   if (!fit) return fit.fault();
   const ToolUpdate update{

@@ -26,8 +26,16 @@ std::span<const BenchSigma> BenchSigmas() {
       {"latitude-sigma-deg", units::kDeg, "1 sigma of the latitude", &S::sigma_latitude},
       {"seat-arcsec", units::kArcsec, "1 sigma of the tool's seat on the rate table",
        &S::sigma_axis},
+      {"rate-scale-ppm", 1e-6, "1 sigma of the scale of the rate table's rates",
+       &S::sigma_rate_scale},
       {"drift-deg-per-h", 1, "1 sigma of a gyro's drift from the middle to the end of a table",
        &S::sigma_drift},
+      {"second-order-ug-per-g2", 1e-6,
+       "1 sigma of accelerometers' second order where the positions do not tell it",
+       &S::sigma_second_order},
+      {"anisoelastic-deg-per-h-per-g2", 1,
+       "1 sigma of gyros' anisoelasticity where the positions do not tell it",
+       &S::sigma_anisoelastic},
       {"wobble-arcsec", units::kArcsec, "1 sigma of each reading's attitude", &S::sigma_wobble},
       {"sigma-accel", 1, "1 sigma of an accelerometer's reading, its unit", &S::sigma_accel},
       {"sigma-deg-per-h", 1, "1 sigma of a gyro's reading at rest", &S::sigma_gyro},
@@ -45,7 +53,12 @@ std::vector<std::string> BenchReferences(std::span<const std::string> site,
     references.push_back(said + " (stated)");
     gravity = gravity || said.rfind("gravity-", 0) == 0;
   }
-  if (!gravity) references.emplace_back("gravity-g 1 (default)");
+  if (!gravity) {
+    references.push_back(fmt::format("gravity {:.6g} m/s2 ({})", setup.reference.gravity_mps2,
+                                     setup.reference.gravity_mps2 == units::kStandardGravity
+                                         ? "standard, default"
+                                         : "normal at the latitude and sea level, default"));
+  }
   const auto how = [&](std::string_view name) {
     return stated.find(name) != stated.end() ? "stated" : "default";
   };

@@ -119,6 +119,7 @@ class ReadingParts {
 // "level_1[0]": what was stated of it is called level; "axis_x_of_table_3[0]": seat.
 std::string SourceOf(const std::string& nuisance) {
   const std::string begin = nuisance.substr(0, nuisance.find('_'));
+  if (begin == "rate") return "rate scale";
   return begin == "axis" ? "seat" : begin;
 }
 
@@ -139,17 +140,37 @@ void AddPriors(const ToolModel& model, const MatrixXd& cov, CovarianceParts& par
     take(SourceOf(nuisance.name), at++, nuisance.prior_sigma);
   }
   at = 0;
-  for (const ToolTerm& term : model.terms()) take("drift", at++, term.prior_sigma);
+  for (const ToolTerm& term : model.terms()) {
+    take(term.kind == TermKind::kDrift ? "drift" : "terms not told", at++, term.prior_sigma);
+  }
   for (const auto& [source, places] : groups) {
     const MatrixXd root = cov(Eigen::all, places) * sigma(places).cwiseInverse().asDiagonal();
     parts.Add(source, root * root.transpose());
   }
 }
 
+// With the root of var(ln v) / 4 of each, as d ln s = d ln v / 2; wobbles stand with the bench.
+std::vector<FitQuantity> FoundSigmas(const ToolNoise& noise, const std::vector<Index>& found,
+                                     const MatrixXd& variance_cov) {
+  const std::pair<const char*, double> sigmas[] = {
+      {"sigma_accel", noise.accel},
+      {"sigma_gyro_deg_per_h", noise.gyro},
+      {"sigma_gyro_table_deg_per_h", noise.gyro_table}};
+  std::vector<FitQuantity> quantities;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] > Index(kGyroTable)) continue;
+    const auto& [name, sigma] = sigmas[found[i]];
+    const double relative = std::sqrt(variance_cov(Index(i), Index(i))) / 2;
+    quantities.push_back({name, FitQuantity::Shape::kNumber, MatrixXd::Constant(1, 1, sigma),
+                          MatrixXd::Constant(1, 1, relative * sigma)});
+  }
+  return quantities;
+}
+
 }  // namespace
 
-CovarianceParts PartsOf(const ToolReadings& readings, const ToolFitSetup& setup,
-                        const ToolModel& model, const ToolAdjustment& adjustment) {
+ToolParts PartsOf(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
+                  const ToolAdjustment& adjustment) {
   const std::array<const char*, kComponents> names = {"accelerometers", "gyros",
                                                       "gyros on the table", "wobble", "wobble"};
   const std::array<bool, kComponents> stated = {
@@ -157,7 +178,8 @@ CovarianceParts PartsOf(const ToolReadings& readings, const ToolFitSetup& setup,
       setup.sigma_gyro_table.has_value(), setup.sigma_wobble.has_value(),
       setup.sigma_wobble.has_value()};
   const ReadingParts of_readings(readings, model, adjustment);
-  CovarianceParts parts;
+  ToolParts whole;
+  CovarianceParts& parts = whole.cov;
   std::vector<Index> found;
   for (std::size_t k = 0; k < kComponents; ++k) {
     if (stated[k] || !of_readings.Has(k)) continue;
@@ -165,11 +187,12 @@ CovarianceParts PartsOf(const ToolReadings& readings, const ToolFitSetup& setup,
     parts.Add("readings", of_readings.cov(k));
   }
   parts.variance_cov = of_readings.VarianceCov(found);
+  whole.found = FoundSigmas(adjustment.noise, found, parts.variance_cov);
   AddPriors(model, adjustment.cov, parts);
   for (std::size_t k = 0; k < kComponents; ++k) {
     if (stated[k] && of_readings.Has(k)) parts.Add(names[k], of_readings.cov(k));
   }
-  return parts;
+  return whole;
 }
 
 }  // namespace wellgyro

@@ -11,7 +11,13 @@ namespace wellgyro {
 /// so that a prior contributes c c', c = C e_j / s_j, and a part V_k of R contributes
 /// C X' R^-1 V_k R^-1 X C. Parts of R that the readings gave are "readings", of type A; those that
 /// were stated, and the priors, are of type B, under the names of what was stated.
-CovarianceParts PartsOf(const ToolReadings& readings, const ToolFitSetup& setup,
-                        const ToolModel& model, const ToolAdjustment& adjustment);
+struct ToolParts {
+  CovarianceParts cov;
+  /// Sigmas of the readings that were found from their scatter: sigma_accel [its unit],
+  /// sigma_gyro_deg_per_h, sigma_gyro_table_deg_per_h.
+  std::vector<FitQuantity> found;
+};
+ToolParts PartsOf(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
+                  const ToolAdjustment& adjustment);
 
 }  // namespace wellgyro

@@ -1,10 +1,16 @@
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 #include <fmt/core.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/fit/added_terms_internal.h"
 #include "wellgyro/fit/hemisphere_internal.h"
 #include "wellgyro/fit/tool_contradictions_internal.h"
@@ -54,7 +60,7 @@ class TableTests {
   TableTests(std::span<const BenchTable> tables, const ToolReadings& readings,
              const ToolAdjustment& a)
       : tables_(tables), readings_(readings), added_(a.linear, a.solution), rows_(a.linear.rows) {
-    const double kinds = static_cast<double>(readings.channels.size()) + 1;
+    const double kinds = 2 * static_cast<double>(readings.channels.size()) + 1;
     each_ = kFalseAlarm / 2 / (kinds * static_cast<double>(tables.size()));
   }
 
@@ -111,6 +117,54 @@ class TableTests {
   std::string said_;
 };
 
+// A setting of the stand: an angle at which several readings were taken.
+struct Setting {
+  std::size_t angle = 0;  ///< of kAngles
+  double at = 0;          ///< [deg]
+};
+struct NamedAngle {
+  const char* name;
+  double StandAngles::*held;
+};
+constexpr NamedAngle kAngles[] = {{"inclination", &StandAngles::inclination},
+                                  {"azimuth", &StandAngles::azimuth},
+                                  {"toolface", &StandAngles::toolface}};
+
+bool operator<(const Setting& a, const Setting& b) {
+  return std::pair(a.angle, a.at) < std::pair(b.angle, b.at);
+}
+
+Setting SettingOf(const ToolRow& row, std::size_t angle) {
+  constexpr double kDigits = 1e-6;  // deg: a number read twice from a table is the same
+  const double degrees = ToDegrees(row.stated.*kAngles[angle].held);
+  return {angle, std::round(degrees / kDigits) * kDigits};
+}
+
+// Of rows at rest, with the number of readings of each.
+std::map<Setting, std::size_t> SettingsOf(const ToolReadings& readings, const ToolAdjustment& a) {
+  std::map<Setting, std::size_t> count;
+  for (std::size_t i = 0; i < readings.rows.size(); ++i) {
+    if (readings.rows[i].mount >= 0 || a.out[i] != 0) continue;
+    for (std::size_t k = 0; k < std::size(kAngles); ++k) ++count[SettingOf(readings.rows[i], k)];
+  }
+  std::erase_if(count, [](const auto& each) { return each.second < kBesideStep; });
+  return count;
+}
+
+// By how much a row's channels change with one of its stated angles [a radian].
+Eigen::VectorXd ByAngle(const ToolModel& model, BenchAxes axes, ToolRow row, std::size_t angle,
+                        const Eigen::VectorXd& x) {
+  constexpr double kStep = 1e-4;  // rad: the difference is exact to kStep^2 / 6
+  StandAngles stated = row.stated;
+  double& its = stated.*kAngles[angle].held;
+  its += kStep;
+  SetAttitude(axes, stated, row);
+  const Eigen::VectorXd above = model.At(row, x).v;
+  its -= 2 * kStep;
+  SetAttitude(axes, stated, row);
+  return (above - model.At(row, x).v) / (2 * kStep);
+}
+
 }  // namespace
 
 void TellHemisphere(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
@@ -143,6 +197,16 @@ void TellTables(std::span<const BenchTable> tables, const ToolReadings& readings
         "or unit is not the same",
         table, channel, 100 * part);
   });
+  const auto one = [](const ToolRow& row) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Ones(row.v.size());
+  };
+  tests.TryChannels(ByRow(readings, a, one), [](const std::string& table,
+                                                const std::string& channel, double offset) {
+    return fmt::format(
+        "{}: channel {} reads {:+.3g} beside what it reads in the other tables: its bias is not "
+        "the same, as after the power was off",
+        table, channel, offset);
+  });
   if (readings.has_temperature) {
     const auto warmed = [&](const ToolRow& row) { return Warmed(model, row, a.x); };
     tests.Try(ByRow(readings, a, warmed), "", [](const std::string& table, double degrees) {
@@ -154,6 +218,33 @@ void TellTables(std::span<const BenchTable> tables, const ToolReadings& readings
     });
   }
   tests.Tell(report);
+}
+
+void TellSettings(const ToolReadings& readings, const ToolFitSetup& setup, const ToolModel& model,
+                  const ToolAdjustment& a, FitReport& report) {
+  const std::map<Setting, std::size_t> settings = SettingsOf(readings, a);
+  const AddedTerms added(a.linear, a.solution);
+  const double each = kFalseAlarm / 2 / std::max(1.0, static_cast<double>(settings.size()));
+  AddedTerm worst;
+  Setting off;
+  for (const auto& [setting, count] : settings) {
+    const auto of = [&, one = setting](const ToolRow& row) -> Eigen::VectorXd {
+      const Setting its = SettingOf(row, one.angle);
+      if (row.mount >= 0 || one < its || its < one) return Eigen::VectorXd::Zero(row.v.size());
+      return ByAngle(model, setup.reference.axes, row, one.angle, a.x);
+    };
+    const AddedTerm term = added.Test(ByRow(readings, a, of), each).front();
+    if (!(term.sigmas > term.limit) || term.sigmas <= worst.sigmas) continue;
+    worst = term;
+    off = setting;
+  }
+  if (worst.sigmas == 0) return;
+  report.remarks.push_back(fmt::format(
+      "{} {:.6g} deg: its readings suit one of {:+.3g} deg beside it ({:.1f} of its sigmas, chance "
+      "reaches {:.1f} in {} settings); with a term for it {} would move by {:.1f} of its sigmas: "
+      "look at that stop of the stand and at its number in the table",
+      kAngles[off.angle].name, off.at, ToDegrees(worst.coefficient), worst.sigmas, worst.limit,
+      settings.size(), worst.moved, worst.moved_sigmas));
 }
 
 }  // namespace wellgyro

@@ -12,14 +12,15 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
-#include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/bench_checks_internal.h"
 #include "wellgyro/fit/residual_trends_internal.h"
 #include "wellgyro/fit/tool_adjust_internal.h"
 #include "wellgyro/fit/tool_choice_internal.h"
 #include "wellgyro/fit/tool_contradictions_internal.h"
 #include "wellgyro/fit/tool_observability_internal.h"
+#include "wellgyro/fit/tool_references_internal.h"
 #include "wellgyro/fit/tool_result_internal.h"
+#include "wellgyro/fit/tool_unseen_internal.h"
 
 namespace wellgyro {
 namespace {
@@ -67,7 +68,7 @@ std::optional<Asked> FarOff(const ToolAdjustment& a, Eigen::Index at, double pri
   return asked.sigmas > kFar ? std::optional(asked) : std::nullopt;
 }
 
-void TellDrifts(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
+void TellTerms(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
   constexpr double kSure = 5;  // sigmas, P = 5.7e-7
   for (int k = 0; k < model.n_terms(); ++k) {
     const ToolTerm& term = model.terms()[static_cast<std::size_t>(k)];
@@ -83,6 +84,12 @@ void TellDrifts(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit) {
     }
     const auto asked = FarOff(a, k, term.prior_sigma);
     if (!asked) continue;
+    if (term.kind != TermKind::kDrift) {
+      fit.calibration.report.remarks.push_back(fmt::format(
+          "{}: the readings ask for {:.3g} where its sigma beforehand is {:.2g}, {:.1f} sigmas off",
+          term.name, asked->value, term.prior_sigma, asked->sigmas));
+      continue;
+    }
     fit.calibration.report.remarks.push_back(fmt::format(
         "{}: the readings ask for {:.3g} deg/h where a drift has a sigma of {:.2g}, {:.1f} sigmas "
         "off: the gyro is not what it is taken for, or the table's order or temperatures are not",
@@ -96,10 +103,11 @@ std::string NuisanceText(const std::string& name) {
 }
 
 // The adjustment is linear in a turn: of a large one it says that it is large, not how large.
-std::string TurnText(double turn, double prior_sigma) {
+std::string AskedText(double turn, const BenchNuisance& nuisance) {
+  if (nuisance.unit == "1") return fmt::format("{:.3g} of the rate", turn);
   constexpr double kLinear = FromDegrees(10);  // sine and angle part by 0.5 %, 1 - cos is 1.5 %
   if (std::abs(turn) < kLinear) return fmt::format("{:.3g} deg", ToDegrees(turn));
-  return fmt::format("far more than its sigma of {:.2g} deg", ToDegrees(prior_sigma));
+  return fmt::format("far more than its sigma of {:.2g} deg", ToDegrees(nuisance.prior_sigma));
 }
 
 // What the readings say of the bench against what was said before; values and sigmas as reported,
@@ -114,8 +122,7 @@ void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit
       fit.calibration.report.remarks.push_back(fmt::format(
           "{}: the readings ask for {} beside what was given, {:.1f} sigmas off: the reference is "
           "wrong, or a unit or sign of the table",
-          NuisanceText(nuisance.name), TurnText(asked->value, nuisance.prior_sigma),
-          asked->sigmas));
+          NuisanceText(nuisance.name), AskedText(asked->value, nuisance), asked->sigmas));
     }
     fit.nuisances.push_back(std::move(nuisance));
   }
@@ -127,8 +134,12 @@ void TellNuisances(const ToolModel& model, const ToolAdjustment& a, ToolFit& fit
     // Of a variance v known to s, its root's sigma; where v is nothing beside s, what it may be.
     const double v = wobbles[k] * wobbles[k], s = a.sigma_wobble_square[k];
     const double sigma = v > 2 * s ? s / (2 * wobbles[k]) : std::sqrt(v + s);
-    fit.nuisances.push_back(
-        {k == 0 ? "wobble" : "wobble of the rate table", wobbles[k], s > 0 ? sigma : 0, 0, "rad"});
+    const char* const name = k == 0 ? "wobble" : "wobble_of_rate_table";
+    fit.nuisances.push_back({name, wobbles[k], s > 0 ? sigma : 0, 0, "rad"});
+    if (!(s > 0)) continue;
+    fit.calibration.report.result.push_back({name, FitQuantity::Shape::kNumber,
+                                             Eigen::MatrixXd::Constant(1, 1, wobbles[k]),
+                                             Eigen::MatrixXd::Constant(1, 1, sigma)});
   }
 }
 
@@ -301,33 +312,6 @@ std::vector<ChannelSignal> Signals(const ToolReadings& readings, const ToolModel
   return signals;
 }
 
-// What would not show in any residual.
-void TellReferences(std::span<const BenchTable> tables, const ToolReadings& readings,
-                    const ToolFitSetup& setup, FitReport& report) {
-  if (!tables.front().Find("T_C")) {
-    report.remarks.emplace_back(
-        "no temperatures (column T_C): what they do to the sensors is in the result");
-  }
-  const bool timed = std::all_of(tables.begin(), tables.end(), [](const BenchTable& data) {
-    return data.Find("t_s").has_value();
-  });
-  if (!timed) {
-    report.remarks.emplace_back(
-        "no times (column t_s): drift is taken to go from row to row, so the rows of a table must "
-        "stand in the order in which they were read");
-  }
-  if (readings.n_accel == 0 || !setup.reference.latitude) return;
-  // Of gravity: an anomaly of 200 mGal, and with it two kilometres of height, 6.3e-4.
-  constexpr double kAbove = 8e-4, kAnomaly = 2e-4;
-  const double normal = SiteAt(*setup.reference.latitude, 0).gravity;
-  const double off = setup.reference.gravity_mps2 / normal - 1;
-  if (off < kAnomaly && off > -kAbove) return;
-  report.remarks.push_back(fmt::format(
-      "gravity is taken as {:.5g} m/s2 where {:.5g} is normal at the bench's latitude: the "
-      "accelerometers' sensitivities are wrong by as much ({:.1e}) if that is not so",
-      setup.reference.gravity_mps2, normal, off));
-}
-
 // Readings of gyros or of accelerometers beyond the terms that they tell.
 Eigen::Index Redundancy(const ToolReadings& readings, const ToolModel& model,
                         const ToolAdjustment& a, bool of_gyros) {
@@ -374,21 +358,6 @@ void TellNoise(const ToolReadings& readings, const ToolFitSetup& setup, const To
   }
 }
 
-// Positions tell a wrong latitude as a rate along gravity, which mass unbalance is too.
-void TellLatitude(std::span<const BenchTable> tables, const ToolReadings& readings,
-                  const ToolFitSetup& setup, FitReport& report) {
-  const bool rates = std::any_of(tables.begin(), tables.end(), [](const BenchTable& data) {
-    return data.Find("rate_deg_s").has_value();
-  });
-  if (readings.n_gyro == 0 || rates) return;
-  const double L = *setup.reference.latitude, turn = FromDegrees(0.1);
-  report.remarks.push_back(fmt::format(
-      "no rate table: nothing here checks the latitude; 0.1 deg more would move mass unbalance by "
-      "{:.2g} deg/h/g and the gyros' sensitivity by {:.2g}",
-      std::abs(kBenchEarthDegPerHour * std::sin(turn) / std::cos(L)),
-      std::abs(std::tan(L) * turn)));
-}
-
 Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& readings,
                       const ToolFitSetup& setup, const ToolModel& model, const ToolAdjustment& a,
                       const LeftOutErrors& left_out) {
@@ -406,19 +375,37 @@ Result<ToolFit> Whole(std::span<const BenchTable> tables, const ToolReadings& re
   TellLeftOutLines(tables, readings, a, report);
   TellReferences(tables, readings, setup, report);
   TellLatitude(tables, readings, setup, report);
+  TellHeating(tables, readings, report);
   TellHemisphere(readings, setup, model, a, report);
   TellTables(tables, readings, model, a, report);
+  TellSettings(readings, setup, model, a, report);
   TellNoise(readings, setup, model, a, report);
-  TellDrifts(model, a, fit);
+  TellTerms(model, a, fit);
   TakeToolResult(readings, setup, model, a, left_out, fit);
   TellNuisances(model, a, fit);
   return fit;
 }
 
+// All terms, those that the readings cannot tell by their priors.
+Result<ToolAdjustment> AdjustAll(const ToolReadings& readings, const ToolFitSetup& setup,
+                                 std::vector<TermBundle>& bundles, std::vector<int>& seen) {
+  seen = SeenBundles(readings, setup, bundles);
+  GivePriors(readings, setup, bundles, seen);
+  auto full = AdjustTool(readings, setup, TermsOf(bundles, seen));
+  if (!full || !GivePriorsByPower(*full, bundles, seen)) return full;
+  return AdjustTool(readings, setup, TermsOf(bundles, seen));
+}
+
 }  // namespace
 
 std::string TextOf(const LeftOutTerm& term) {
-  return term.seen ? fmt::format("{}: below {:.2g}", term.name, term.bound)
+  const bool loop = term.name.find("hysteresis") != std::string::npos;
+  const std::string name =
+      loop ? term.name +
+                 " (of a loop +-(1 - tau^2); at ramps of one rate one that stays "
+                 "open is heating)"
+           : term.name;
+  return term.seen ? fmt::format("{}: below {:.2g}", name, term.bound)
                    : fmt::format("{}: these readings cannot tell", term.name);
 }
 
@@ -429,11 +416,11 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
   if (readings->n_gyro > 0 && !setup.reference.latitude) {
     throw std::invalid_argument("gyros need the latitude");
   }
-  const std::vector<TermBundle> bundles = CandidateTerms(*readings, setup);
+  std::vector<TermBundle> bundles = CandidateTerms(*readings, setup);
   const auto refused = [&](const Fault& fault) { return FaultOfAll(tables, fault.text); };
   if (const auto fault = UnseenNeeded(*readings, setup, bundles)) return refused(*fault);
-  const std::vector<int> seen = SeenBundles(*readings, setup, bundles);
-  const auto full = AdjustTool(*readings, setup, TermsOf(bundles, seen));
+  std::vector<int> seen;
+  const auto full = AdjustAll(*readings, setup, bundles, seen);
   if (!full) return refused(full.fault());
   const TermChoice choice(bundles, seen, *full);
   const std::vector<int> chosen = choice.Best();
@@ -446,6 +433,9 @@ Result<ToolFit> FitTool(std::span<const BenchTable> tables, const ToolFitSetup& 
   TellLeftOut(bundles, seen, chosen, *full, *fit);
   for (const LeftOutTerm& term : fit->left_out) {
     fit->calibration.report.remarks.push_back("left out: " + TextOf(term));
+  }
+  for (std::string& remark : UntoldTerms(*readings, ToolModel(*readings, setup, terms), *last)) {
+    fit->calibration.report.remarks.push_back(std::move(remark));
   }
   for (const std::string& rival : choice.Rivals(chosen)) {
     fit->calibration.report.remarks.push_back(

@@ -28,9 +28,22 @@ struct ToolFitSetup {
   double sigma_latitude = 6e-4 * units::kDeg;  ///< [rad]: 67 m
   /// Of the tool on the rate table, each direction [rad].
   double sigma_axis = 60 * units::kArcsec;
+  /// Of the scale of a rate table's rates, common to all its rows. Tables for inertial sensors are
+  /// told from others by a rate that is within 0.05 % in the mean over 10 deg (Missile Technology
+  /// Control Regime, annex, 9.B.2.c): 2.9e-4 of a uniform distribution (JCGM 100:2008, 4.3.7), of
+  /// which a third is taken for a reading over turns.
+  double sigma_rate_scale = 1e-4;
   /// Of a gyro from the middle to the end of a table [deg/h]; it may bend by as much as a walk
   /// does.
   double sigma_drift = 0.1;
+  /// Of an accelerometer's second order where the positions do not tell it [gravity per gravity^2].
+  /// Micromachined ones are off a line by 0.5 % of 8 g, K2 (8 g)^2 / 2 (data sheet of the ADXL350);
+  /// servo accelerometers of quartz, some 3e-5, are to be stated so.
+  double sigma_second_order = 1.25e-3;
+  /// Of a gyro's anisoelasticity where the positions do not tell it [deg/h per gravity^2]: 0.1 to
+  /// 0.3 of dynamically tuned gyros (Titterton and Weston, Strapdown Inertial Navigation
+  /// Technology, 2004, ch. 4).
+  double sigma_anisoelastic = 0.3;
   std::optional<double> sigma_wobble;      ///< of each reading's attitude, about each axis [rad]
   std::optional<double> sigma_accel;       ///< of a reading [its unit]
   std::optional<double> sigma_gyro;        ///< of a reading at rest [its unit]
@@ -72,7 +85,10 @@ struct ToolFit {
 ///
 /// Channels as in SensorGroup, their polynomials in temperature, second order, force, heating and
 /// hysteresis terms (a loop that heating and cooling open, not corrected by the tool model: its
-/// size is in the biases' covariance). Of the bench: level, north and zero of inclination of each
+/// size is in the biases' covariance). A term that the readings do not tell from the others is one
+/// of size zero to a sigma of such terms of published sensors, or, of a power of the temperature,
+/// as large as the power below it, so that what it does to the others is in their covariance. Of
+/// the bench: level, north and zero of inclination of each
 /// table, its drift in time, the tool's seat on the rate table, the latitude, each with its prior;
 /// the wobble of every reading, which moves all channels together, is marginalised, its size found.
 /// Terms are chosen by marginal likelihood, each bundle's prior variance found from it, at 1 %

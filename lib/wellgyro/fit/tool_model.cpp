@@ -40,7 +40,10 @@ ToolModel::ToolModel(const ToolReadings& readings, const ToolFitSetup& setup,
       terms_of_(readings.channels.size()) {
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     for (const TermUse& use : terms_[k].uses) {
-      terms_of_[static_cast<std::size_t>(use.channel)].push_back(static_cast<int>(k));
+      std::vector<int>& of_channel = terms_of_[static_cast<std::size_t>(use.channel)];
+      if (of_channel.empty() || of_channel.back() != static_cast<int>(k)) {
+        of_channel.push_back(static_cast<int>(k));
+      }
     }
   }
   AddNuisances();
@@ -48,10 +51,10 @@ ToolModel::ToolModel(const ToolReadings& readings, const ToolFitSetup& setup,
 
 void ToolModel::AddNuisances() {
   level_.assign(static_cast<std::size_t>(readings_.n_tables), -1);
-  inclination_ = level_;
+  inclination_ = rate_scale_ = level_;
   mount_.assign(static_cast<std::size_t>(3 * readings_.n_tables), -1);
-  const auto add = [&](const std::string& name, double sigma) {
-    nuisances_.push_back({name, 0, 0, sigma, "rad"});
+  const auto add = [&](const std::string& name, double sigma, const char* unit = "rad") {
+    nuisances_.push_back({name, 0, 0, sigma, unit});
     return static_cast<int>(nuisances_.size()) - 1;
   };
   for (const ToolRow& row : readings_.rows) {
@@ -63,6 +66,10 @@ void ToolModel::AddNuisances() {
           fmt::format("axis_{}_of_table_{}", "xyz"[row.mount % 3], row.table + 1);
       place = add(name + "[0]", setup_.sigma_axis);
       add(name + "[1]", setup_.sigma_axis);
+      if (rate_scale_[table] < 0) {
+        rate_scale_[table] =
+            add(fmt::format("rate_scale_{}", row.table + 1), setup_.sigma_rate_scale, "1");
+      }
       continue;
     }
     if (level_[table] >= 0) continue;
@@ -108,6 +115,27 @@ void ToolModel::AtRest(const ToolRow& row, const Eigen::VectorXd& z, double lati
   }
 }
 
+// The table turns by its rate, of unknown scale, and the Earth's beside that.
+void ToolModel::OnTable(const ToolRow& row, const Eigen::VectorXd& z, double latitude,
+                        State& state) const {
+  const int place = mount_[static_cast<std::size_t>(row.mount)], axis = row.mount % 3;
+  const int scale = rate_scale_[static_cast<std::size_t>(row.table)];
+  const Eigen::Vector3d n = Eigen::Vector3d::Unit(axis);
+  const Eigen::Vector3d e[] = {Eigen::Vector3d::Unit((axis + 1) % 3),
+                               Eigen::Vector3d::Unit((axis + 2) % 3)};
+  const Eigen::Vector3d leaning = n + z[place] * e[0] + z[place + 1] * e[1];
+  const Eigen::Vector3d up = leaning.normalized();
+  const double rate = (1 + z[scale]) * row.rate + kBenchEarthDegPerHour * std::sin(latitude);
+  state.row.w_B = rate * up;
+  state.row.f_B = up;
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector3d by = (e[k] - up * up.dot(e[k])) / leaning.norm();
+    state.slopes.push_back({place + k, rate * by, by});
+  }
+  state.slopes.push_back({scale, row.rate * up, {0, 0, 0}});
+  state.slopes.push_back({latitude_, kBenchEarthDegPerHour * std::cos(latitude) * up, {0, 0, 0}});
+}
+
 ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x) const {
   State state;
   state.row.row = &row;
@@ -116,20 +144,7 @@ ToolModel::State ToolModel::StateOf(const ToolRow& row, const Eigen::VectorXd& x
   const double stated = setup_.reference.latitude.value_or(0);
   const double latitude = stated + (latitude_ >= 0 ? z[latitude_] : 0);
   if (row.mount >= 0) {
-    const int place = mount_[static_cast<std::size_t>(row.mount)], axis = row.mount % 3;
-    const Eigen::Vector3d n = Eigen::Vector3d::Unit(axis);
-    const Eigen::Vector3d e[] = {Eigen::Vector3d::Unit((axis + 1) % 3),
-                                 Eigen::Vector3d::Unit((axis + 2) % 3)};
-    const Eigen::Vector3d leaning = n + z[place] * e[0] + z[place + 1] * e[1];
-    const Eigen::Vector3d up = leaning.normalized();
-    const double rate = row.rate + kBenchEarthDegPerHour * std::sin(latitude);
-    state.row.w_B = rate * up;
-    state.row.f_B = up;
-    for (int k = 0; k < 2; ++k) {
-      const Eigen::Vector3d by = (e[k] - up * up.dot(e[k])) / leaning.norm();
-      state.slopes.push_back({place + k, rate * by, by});
-    }
-    state.slopes.push_back({latitude_, kBenchEarthDegPerHour * std::cos(latitude) * up, {0, 0, 0}});
+    OnTable(row, z, latitude, state);
   } else {
     AtRest(row, z, latitude, state);
   }

@@ -28,7 +28,7 @@ inline bool Alike(const ToolNoise& a, const ToolNoise& b) {
 
 /// Readings of the tool as functions of the terms' coefficients, and behind them of what the bench
 /// has: level (about north and east), north and zero of inclination of each table, seats on the
-/// rate table, latitude.
+/// rate table and the scale of its rates, latitude.
 class ToolModel {
  public:
   ToolModel(const ToolReadings& readings, const ToolFitSetup& setup, std::vector<ToolTerm> terms);
@@ -55,6 +55,7 @@ class ToolModel {
   struct State;
   State StateOf(const ToolRow& row, const Eigen::VectorXd& x) const;
   void AtRest(const ToolRow& row, const Eigen::VectorXd& z, double latitude, State& state) const;
+  void OnTable(const ToolRow& row, const Eigen::VectorXd& z, double latitude, State& state) const;
   void AddNuisances();
 
   const ToolReadings& readings_;
@@ -63,7 +64,7 @@ class ToolModel {
   std::vector<std::vector<int>> terms_of_;  ///< by channel
   std::vector<BenchNuisance> nuisances_;
   /// Places among the nuisances, by table; by mount.
-  std::vector<int> level_, inclination_, mount_;
+  std::vector<int> level_, inclination_, rate_scale_, mount_;
   int latitude_ = -1;
 };
 

@@ -186,10 +186,12 @@ void TakeToolResult(const ToolReadings& readings, const ToolFitSetup& setup, con
   FitReport& report = fit.calibration.report;
   report.values += left_out.shift.head(report.values.size());
   report.cov += left_out.cov.topLeftCorner(report.cov.rows(), report.cov.cols());
-  const CovarianceParts of_model = PartsOf(readings, setup, model, a);
+  ToolParts parts = PartsOf(readings, setup, model, a);
+  const CovarianceParts& of_model = parts.cov;
   report.budget = BudgetOf(
       PartsOf(Eigen::MatrixXd::Identity(model.size(), left_out.shift.size()), of_model, left_out));
   AddQuantities(report);
+  for (FitQuantity& sigma : parts.found) report.result.push_back(std::move(sigma));
   ToolCalibration tool;
   tool.gyro = EmptyGroup(readings, setup, true);
   tool.accel = EmptyGroup(readings, setup, false);

@@ -141,10 +141,8 @@ std::optional<Fault> Attitude(const BenchTable& data, const ToolFitSetup& setup,
     row.rate = value("rate_deg_s") * units::kHour;
     return std::nullopt;
   }
-  const double azimuth = FromDegrees(value("az"));
-  row.across_L = {-std::sin(azimuth), std::cos(azimuth), 0};
-  row.R_BL = BenchFromLevel(setup.reference.axes, FromDegrees(value("inc")), azimuth,
-                            FromDegrees(value("tf")));
+  SetAttitude(setup.reference.axes,
+              {FromDegrees(value("inc")), FromDegrees(value("az")), FromDegrees(value("tf"))}, row);
   return std::nullopt;
 }
 
@@ -323,6 +321,12 @@ std::optional<Fault> SpanTemperatures(std::span<const BenchTable> tables, ToolRe
 }
 
 }  // namespace
+
+void SetAttitude(BenchAxes axes, const StandAngles& stated, ToolRow& row) {
+  row.stated = stated;
+  row.across_L = {-std::sin(stated.azimuth), std::cos(stated.azimuth), 0};
+  row.R_BL = BenchFromLevel(axes, stated.inclination, stated.azimuth, stated.toolface);
+}
 
 Result<ToolReadings> ReadTool(std::span<const BenchTable> tables, const ToolFitSetup& setup) {
   ToolReadings readings;

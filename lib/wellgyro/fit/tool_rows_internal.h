@@ -20,11 +20,17 @@ struct ToolChannel {
   int axis = 0;  ///< nominal input axis
 };
 
+/// How a stand holds the tool, as the table has it [rad].
+struct StandAngles {
+  double inclination = 0, azimuth = 0, toolface = 0;
+};
+
 /// One reading of a bench.
 struct ToolRow {
   int table = 0, line = 0;
-  int mount = -1;  ///< 3 table + axis on a rate table, -1 at rest
-  Eigen::Matrix3d R_BL = Eigen::Matrix3d::Identity();  ///< at rest: stated attitude, level to bench
+  int mount = -1;      ///< 3 table + axis on a rate table, -1 at rest
+  StandAngles stated;  ///< at rest
+  Eigen::Matrix3d R_BL = Eigen::Matrix3d::Identity();  ///< at rest: by these, level to bench
   Eigen::Vector3d across_L = Eigen::Vector3d::Zero();  ///< at rest: inclination grows about it
   double rate = 0;                                     ///< on a rate table [deg/h]
   double temperature = 0, heating = 0;                 ///< [degC], [degC/s]
@@ -33,6 +39,9 @@ struct ToolRow {
   std::vector<int> channels;                           ///< that were read
   Eigen::VectorXd v;                                   ///< what they read
 };
+
+/// Sets the attitude of a row at rest.
+void SetAttitude(BenchAxes axes, const StandAngles& stated, ToolRow& row);
 
 struct ToolReadings {
   std::vector<ToolChannel> channels;  ///< accelerometers first

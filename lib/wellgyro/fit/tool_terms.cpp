@@ -72,8 +72,10 @@ class Candidates {
     std::iota(channels.begin(), channels.end(), 0);
     return channels;
   }
-  // Along each accelerometer's own axis.
-  void AddOwnSquares() {
+  // Along each accelerometer's own axis a, and across it. With the products of a position's force
+  // u_a^2 + u_b^2 + u_c^2 = g^2 is one with the bias: across there are u_b^2 - u_c^2 and the three
+  // products of two axes.
+  void AddSquares() {
     TermBundle& bundle = Add("accel_K2", false);
     for (int c = 0; c < 3; ++c) {
       bundle.terms.push_back(
@@ -81,8 +83,13 @@ class Candidates {
     }
     TermBundle& cross = Add("accel_K2_cross", false, "accel_K2");
     for (int c = 0; c < 3; ++c) {
-      for (int j = 0; j < 6; ++j) {
-        if (j == c) continue;
+      const int b = (c + 1) % 3, other = (c + 2) % 3;
+      cross.terms.push_back({fmt::format("accel_K2[{},{}]", c, b),
+                             TermKind::kSquare,
+                             0,
+                             -1,
+                             {{c, b, 1}, {c, other, -1}}});
+      for (int j = 3; j < 6; ++j) {
         cross.terms.push_back(
             {fmt::format("accel_K2[{},{}]", c, j), TermKind::kSquare, 0, -1, {{c, j, 1}}});
       }
@@ -168,7 +175,7 @@ class Candidates {
     AddVector(gyro, p + "b", TermKind::kBias, 0, -1, true, "");
     AddMatrix(gyro, p + "S", TermKind::kSensitivity, 0, All(gyro), true, "");
     if (gyro) Forces();
-    if (!gyro) AddOwnSquares();
+    if (!gyro) AddSquares();
     if (readings_.has_temperature) Temperatures(gyro);
     for (int table = 0; table < readings_.n_tables; ++table) Drifts(gyro, table);
   }
