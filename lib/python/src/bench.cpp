@@ -15,6 +15,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "wellgyro/base/units.h"
+#include "wellgyro/earth/earth.h"
 #include "wellgyro/fit/bench_sigmas.h"
 #include "wellgyro/fit/tool_fit.h"
 #include "wellgyro/io/sensor/bench_data.h"
@@ -70,6 +71,10 @@ ToolFitSetup SetupOf(const Bench& bench, std::vector<std::string>& references) {
   Take(bench.gravity_mps2, 1, r.gravity);
   Take(bench.gravity_mps2, 1, r.gravity_mps2);
   Take(bench.latitude_deg, units::kDeg, r.latitude);
+  // As the program: normal gravity where only the latitude is stated.
+  if (!bench.gravity_g && !bench.gravity_mps2 && r.latitude) {
+    r.gravity_mps2 = SiteAt(*r.latitude, 0).gravity;
+  }
   if (bench.tool_axes) r.axes = BenchAxes::kTool;
   std::set<std::string, std::less<>> stated;
   for (const BenchSigma& sigma : BenchSigmas()) {

@@ -63,7 +63,10 @@ def calibrate(data: PathLike | pd.DataFrame | Sequence[PathLike | pd.DataFrame],
               level_deg: float | None = None, north_sigma_deg: float | None = None,
               inclination_sigma_deg: float | None = None,
               latitude_sigma_deg: float | None = None, seat_arcsec: float | None = None,
-              drift_deg_per_h: float | None = None, wobble_arcsec: float | None = None,
+              rate_scale_ppm: float | None = None, drift_deg_per_h: float | None = None,
+              second_order_ug_per_g2: float | None = None,
+              anisoelastic_deg_per_h_per_g2: float | None = None,
+              wobble_arcsec: float | None = None,
               sigma_accel: float | None = None, sigma_deg_per_h: float | None = None,
               sigma_table_deg_per_h: float | None = None, max_degree: int | None = None,
               tool: bool | PathLike = False, channels: Sequence[int] | None = None,
@@ -72,11 +75,12 @@ def calibrate(data: PathLike | pd.DataFrame | Sequence[PathLike | pd.DataFrame],
               expires: str = "") -> Calibration:
     """All bench data of a tool in one adjustment, as `wellgyro calibrate tool`.
 
-    data: tables of positions (columns inc, az, tf [deg] and Gx, Gy, Gz or fx, fy, fz or vx, vy, vz
-    and m_x1 ..) and of a rate table (axis, rate_deg_s, m_x1 ..), with T_C and t_s where written
-    down. Gravity is 1 g unless told; gyros need the latitude. The sigmas are what is known of the
-    bench before its readings; of readings, found where absent. tool: True makes a tool file, a path
-    brings that one up to date; channels, unit_per_count and what follows go into it.
+    data: tables of positions (columns inc, az, tf [deg] and Gx, Gy, Gz or fx, fy, fz or vx, vy,
+    vz and m_x1 ..) and of a rate table (axis, rate_deg_s, m_x1 ..), with T_C and t_s where
+    written down. Gravity is normal at the latitude unless told, without one 1 g; gyros need the
+    latitude. The sigmas are what is known of the bench before its readings; of readings, found
+    where absent. tool: True makes a tool file, a path brings that one up to date; channels,
+    unit_per_count and what follows go into it.
     A table that cannot be used raises FileError."""
     if isinstance(data, (str, os.PathLike, pd.DataFrame)):
         data = [data]
