@@ -333,7 +333,7 @@ class Calibrate(FreshProgramTest):
         # What was known of the bench before, stated or not, on paper and in the file.
         for word in ("gravity-mps2 9.8195 (stated)", "level-deg 0.5 (1 sigma, default)",
                      "seat-arcsec 60 (1 sigma, default)",
-                     "rate-scale-ppm 100 (1 sigma, default)", "sigma-accel found from the readings",
+                     "rate-scale-ppm 290 (1 sigma, default)", "sigma-accel found from the readings",
                      "max-degree 3 (default)"):
             self.assertIn(f"<li>{word}</li>", html)
             self.assertIn(word, self.Toml("c.toml")["references"])

@@ -29,10 +29,11 @@ struct ToolFitSetup {
   /// Of the tool on the rate table, each direction [rad].
   double sigma_axis = 60 * units::kArcsec;
   /// Of the scale of a rate table's rates, common to all its rows. Tables for inertial sensors are
-  /// told from others by a rate that is within 0.05 % in the mean over 10 deg (Missile Technology
-  /// Control Regime, annex, 9.B.2.c): 2.9e-4 of a uniform distribution (JCGM 100:2008, 4.3.7), of
-  /// which a third is taken for a reading over turns.
-  double sigma_rate_scale = 1e-4;
+  /// told from others by a rate that is within 0.05 % (Missile Technology Control Regime, annex,
+  /// 9.B.2.c), of a uniform distribution between these bounds (JCGM 100:2008, 4.3.7). A latitude
+  /// 0.01 deg off is as much at 60 deg: that a table checks it finer, its scale must be known
+  /// finer.
+  double sigma_rate_scale = 2.9e-4;
   /// Of a gyro from the middle to the end of a table [deg/h]; it may bend by as much as a walk
   /// does.
   double sigma_drift = 0.1;

@@ -79,7 +79,7 @@ std::string WhatWouldTell(const ToolReadings& readings, const ToolTerm& term) {
 // The parameters of the tool, without priors, that share the doubt of term k.
 std::vector<std::string> Confounded(const ToolModel& model, const ToolAdjustment& a, int k) {
   // Square of a correlation: the share of a parameter's variance that the term's makes.
-  constexpr double kShare = 0.5;
+  constexpr double kShare = 0.25;
   std::vector<std::string> names;
   for (int i = 0; i < model.n_terms(); ++i) {
     const ToolTerm& term = model.terms()[static_cast<std::size_t>(i)];
