@@ -106,8 +106,8 @@ void AddCalibrateHistory(CLI::App& calibrate, int& exit_code) {
   command->add_option("--days-ahead", o->setup.days_ahead, "of the job, default 30")
       ->check(Within(0, 10'000));
   command->footer(
-      "Example:\n  wellgyro calibrate history --tool 2026-01.toml --tool 2026-07.toml "
-      "--temperature-degc 90");
+      "Example:\n  wellgyro calibrate history --tool 2026-01.toml --tool 2026-07.toml \\\n"
+      "      --temperature-degc 90");
   OnCall(command, exit_code, [o] { return History(*o); });
 }
 

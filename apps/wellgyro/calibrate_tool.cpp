@@ -372,7 +372,8 @@ void AddCalibrateTool(CLI::App& calibrate, int& exit_code) {
   AddTool(*command, o->bench);
   command->footer(
       "Example:\n  wellgyro calibrate tool --data up.csv --data down.csv --data rates.csv \\\n"
-      "      --latitude-deg 60 --out tool-cal.toml --tool tool.toml --certificate tool.html");
+      "      --latitude-deg 60 --out tool-cal.toml --tool tool.toml \\\n"
+      "      --certificate tool.html");
   OnCall(command, exit_code, [o] { return Concluded(RunToolFit(*o)); });
 }
 

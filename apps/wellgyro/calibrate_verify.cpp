@@ -140,9 +140,9 @@ void AddCalibrateVerify(CLI::App& calibrate, int& exit_code) {
   AddPositive(*command, "--budget-accel-mg", o->setup.budget_accel_bias, 1e-3,
               "of accelerometer biases");
   command->footer(
-      "Example:\n  wellgyro calibrate verify --data found.csv --tool tool.toml --latitude-deg 60 "
-      "\\\n"
-      "      --sigma-deg-per-h 0.02 --sigma-accel 2e-5 --budget-bias-deg-per-h 0.05\n"
+      "Example:\n  wellgyro calibrate verify --data found.csv --tool tool.toml \\\n"
+      "      --latitude-deg 60 --sigma-deg-per-h 0.02 --sigma-accel 2e-5 \\\n"
+      "      --budget-bias-deg-per-h 0.05\n"
       "Exit code 4: fail, or not verified: these positions do not tell every shift.");
   OnCall(command, exit_code, [o] { return Verify(*o); });
 }
