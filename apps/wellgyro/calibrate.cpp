@@ -95,9 +95,9 @@ void AddMethod(CLI::App& calibrate, int& exit_code, const std::shared_ptr<BenchO
       ->required();
   command->add_option("--out", o->out, "calibration file to write (TOML)")->required();
   method.add_options(*command, *o);
-  command->footer(fmt::format(
-      "Example:\n  wellgyro calibrate {0} --data bench.csv \\\n      --out {0}.toml{1}{2}",
-      method.name, *method.needs ? " " : "", method.needs));
+  command->footer(
+      fmt::format("Example:\n  wellgyro calibrate {0} --data bench.csv \\\n      --out {0}.toml{1}",
+                  method.name, method.needs));
   const bool takes_gravity = command->get_option_no_throw("--gravity-g") != nullptr;
   OnCall(command, exit_code,
          [o, &method, takes_gravity] { return Concluded(RunMethod(*o, method, takes_gravity)); });
