@@ -188,7 +188,7 @@ TEST_P(PullBack, MovesNoStationBelowIt) {
   EXPECT_LT(end.metres, 0.3);
   EXPECT_LT(end.square, kMost) << end.metres << " m, sigma " << end.sigma;
   EXPECT_LT(end.sigma, 1.3 * whole.sigma) << whole.sigma;
-  EXPECT_GT(end.sigma, 0.7 * whole.sigma) << whole.sigma;
+  EXPECT_GT(end.sigma, 0.5 * whole.sigma) << whole.sigma << ", with more norths on the way";
   for (const Station& s : survey.passes) {
     EXPECT_LT(s.dogleg_severity, 1.3 * FromDegrees(0.2))
         << s.md << " m in pass " << s.pass_number << ", the hole has 0.2 deg/m";
