@@ -33,12 +33,12 @@ constexpr double kLoose = 0.15;
 // Its scales of the rate's change from knot to knot [rad/s]: elsewhere, so that the path does not
 // turn with a bend, and where the tool starts or stops. Halved, or the second doubled, seven runs
 // come to the same solutions; with twice the first one of them does not.
-constexpr double kChange = 0.02, kChangeStarting = 0.1;
+constexpr double kRateChange = 0.02, kRateChangeStarting = 0.1;
 // The same of RollAbout(), whose bends are known: uniform within a step of 2.8 deg a heading has a
 // sigma of 0.014, and a bend of 1 deg/30 m at 1 m/s that is known to 1 % is off by as much.
 constexpr double kLooseAbout = 0.04;
 // A swing by 20 deg in 10 s changes its rate by up to 0.14 rad/s in a second.
-constexpr double kChangeAbout = 0.2, kChangeStartingAbout = 0.5;
+constexpr double kRateChangeAbout = 0.2, kRateChangeStartingAbout = 0.5;
 constexpr std::size_t kLeast = 10;  // knots, as a window has
 // Neighbours of a knot, a minute to either side, and of them that tell: the median of five is right
 // with two wrong. What is below 0.3 of the Earth's horizontal rate has no direction beside the
@@ -219,8 +219,8 @@ std::vector<double> HiddenRoll(std::span<const RunKnot> knots, const EstimateSet
   const RollModel model{.skew = fixed.skew,
                         .gyro_noise = setup.gyro.angle_random_walk,
                         .model_sigma = kLoose * earth,
-                        .rate_change = kChange,
-                        .rate_change_started = kChangeStarting};
+                        .rate_change = kRateChange,
+                        .rate_change_started = kRateChangeStarting};
   ForEachStretch(knots, [&](std::size_t begin, std::size_t end) {
     const std::vector<RollWindow> windows = Within(all, begin, end);
     std::vector<RollReading> readings;
@@ -257,8 +257,8 @@ NodeGuess RollAbout(const EstimateSetup& setup, std::span<const RunKnot> knots,
   const std::vector<double> starts = SpeedStarts(knots);
   RollModel model{.gyro_noise = setup.gyro.angle_random_walk,
                   .model_sigma = kLooseAbout * kEarthRate * std::cos(setup.site.latitude),
-                  .rate_change = kChangeAbout,
-                  .rate_change_started = kChangeStartingAbout};
+                  .rate_change = kRateChangeAbout,
+                  .rate_change_started = kRateChangeStartingAbout};
   ForEachStretch(knots, [&](std::size_t begin, std::size_t end) {
     std::vector<RollReading> readings;
     for (std::size_t k = begin; k < end; ++k) {
