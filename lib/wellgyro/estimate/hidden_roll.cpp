@@ -39,8 +39,6 @@ constexpr double kRateChange = 0.02, kRateChangeStarting = 0.1;
 constexpr double kLooseAbout = 0.04;
 // A swing by 20 deg in 10 s changes its rate by up to 0.14 rad/s in a second.
 constexpr double kRateChangeAbout = 0.2, kRateChangeStartingAbout = 0.5;
-// Headings that part by no more are the same: one and a half steps of the grid [rad].
-constexpr double kSameHeading = 0.075;
 constexpr std::size_t kLeast = 10;  // knots, as a window has
 // Neighbours of a knot, a minute to either side, and of them that tell: the median of five is right
 // with two wrong. What is below 0.3 of the Earth's horizontal rate has no direction beside the
@@ -250,9 +248,9 @@ std::vector<std::vector<double>> HiddenRolls(std::span<const RunKnot> knots,
   return rolls;
 }
 
-std::optional<NodeGuess> RollAbout(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                   const RunState* before, std::span<const Node> nodes,
-                                   const BorderVector& border) {
+NodeGuess RollAbout(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                    const RunState* before, std::span<const Node> nodes,
+                    const BorderVector& border) {
   const Solved solved(setup, knots, before, nodes, border);
   NodeGuess guess;
   for (const Node& node : nodes) guess.push_back({node.R_LT, node.roll_rate, node.md, node.speed});
@@ -261,7 +259,6 @@ std::optional<NodeGuess> RollAbout(const EstimateSetup& setup, std::span<const R
                   .model_sigma = kLooseAbout * kEarthRate * std::cos(setup.site.latitude),
                   .rate_change = kRateChangeAbout,
                   .rate_change_started = kRateChangeStartingAbout};
-  double most = 0;
   ForEachStretch(knots, [&](std::size_t begin, std::size_t end) {
     std::vector<RollReading> readings;
     for (std::size_t k = begin; k < end; ++k) {
@@ -271,13 +268,10 @@ std::optional<NodeGuess> RollAbout(const EstimateSetup& setup, std::span<const R
     const RollPath path = LikeliestRoll(readings, model);
     for (std::size_t k = begin; k < end; ++k) {
       Node& node = guess[k];
-      const double off = WrapPi(path.headings[k - begin] - solved.HeadingAt(k));
-      most = std::max(most, std::abs(off));
-      node.R_LT = node.R_LT * RotationZ(off);
+      node.R_LT = node.R_LT * RotationZ(path.headings[k - begin] - solved.HeadingAt(k));
       node.roll_rate = path.turns[k - begin] / knots[k].increment.seconds;
     }
   });
-  if (!(most > kSameHeading)) return std::nullopt;
   return guess;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,9 +37,9 @@ std::vector<std::vector<double>> HiddenRolls(std::span<const RunKnot> knots,
 /// LikeliestRoll() by the errors and bends that the solution has found. Near vertical a solution
 /// may be a local minimum, wrong where the tool swings, starts or stops and right elsewhere; what
 /// it knows of the tool and the hole then shows the roll in those places too. Drift and swing are
-/// zero. Absent where the path is the solution's own. `before`: of a part of a run, else nullptr.
-std::optional<NodeGuess> RollAbout(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                                   const RunState* before, std::span<const Node> nodes,
-                                   const BorderVector& border);
+/// zero. `before`: of a part of a run, else nullptr.
+NodeGuess RollAbout(const EstimateSetup& setup, std::span<const RunKnot> knots,
+                    const RunState* before, std::span<const Node> nodes,
+                    const BorderVector& border);
 
 }  // namespace wellgyro

@@ -278,15 +278,12 @@ void SolveFrom(const NodeGuess& guess, const Problem& p, Solution& solution, Cho
 }
 
 /// Solves again from nearby a solution as long as that is better, where it may be a local minimum.
-/// Of the whole run only: on the way each stop solves the run so far, and a swing is not sought.
 void SolveAbout(const Problem& p, Solution& solution, Choice& choice) {
-  const bool seeks = p.hides_roll && p.may_swing;
-  for (int i = 0; i < kAboutMost && seeks && !solution.nodes.empty(); ++i) {
+  for (int i = 0; i < kAboutMost && p.hides_roll && !solution.nodes.empty(); ++i) {
     const double evidence = solution.evidence;
-    const auto about = RollAbout(SetupWith(p.setup, solution.swing), p.knots, p.before,
-                                 solution.nodes, solution.border);
-    if (!about) return;
-    SolveFrom(*about, p, solution, choice);
+    const NodeGuess about = RollAbout(SetupWith(p.setup, solution.swing), p.knots, p.before,
+                                      solution.nodes, solution.border);
+    SolveFrom(about, p, solution, choice);
     if (!(solution.evidence < evidence - kDecides)) return;
   }
 }
