@@ -29,8 +29,8 @@ namespace wellgyro {
 ///   by the smallest step that the axis makes. `gyro_dead`, `accel_dead`: for nine tenths of the
 ///   run.
 /// - `axes`: f_z' = w_y f_x - w_x f_y whatever the roll, because gravity does not turn but with the
-///   Earth. Stretches of 30 s in which the hole bends tell this from the seven other ways to pair gyros with
-///   accelerometers; fails where another explains them and this does not, and names it.
+///   Earth. Stretches of 30 s in which the hole bends tell this from the seven other ways to pair
+///   gyros with accelerometers; fails where another explains them and this does not, and names it.
 ///   `axes_change`: in some stretches, one after the other.
 /// - `gyro_truncated`, `accel_truncated` [1]: how often the two axes across read zero, over how
 ///   often they would by the levels beside it: 2 where numbers are cut towards zero.
