@@ -58,8 +58,8 @@ std::vector<int> MissingInclinations(const ToolReadings& readings) {
   for (int inclination = 0; inclination <= 180; inclination += 45) {
     const bool there =
         std::any_of(readings.rows.begin(), readings.rows.end(), [&](const ToolRow& row) {
-          const double cosine = std::clamp(row.R_BL(2, 2), -1.0, 1.0);
-          return row.mount < 0 && std::abs(std::acos(cosine) - FromDegrees(inclination)) < kNear;
+          const double its = std::atan2(row.R_BL.row(2).head<2>().norm(), row.R_BL(2, 2));
+          return row.mount < 0 && std::abs(its - FromDegrees(inclination)) < kNear;
         });
     if (!there) missing.push_back(inclination);
   }
