@@ -110,7 +110,10 @@ TEST(DepthSlip, DepthsThatScatterShowNoneAndHideNone) {
 }
 
 TEST(DepthSlip, TheSmallestIsNoticedFourTimesInFive) {
-  const RunReliability told = PassedTwice{}.Found().reliability;
+  const RunSlip slip = PassedTwice{}.Found();
+  const RunReliability& told = slip.reliability;
+  EXPECT_EQ(slip.unseen_W.norm(), 0)
+      << "but in the top, straight tenth of the hole the largest shows";
   ASSERT_TRUE(told.smallest && told.md);
   EXPECT_NEAR(told.shift_W.norm(), *told.smallest, 1e-9);
   int noticed = 0;
@@ -128,6 +131,7 @@ TEST(DepthSlip, NothingTellsItWhereTheHoleIsStraightOrPassedOnce) {
   const RunSlip straight = PassedTwice{.build = 0}.Found();
   EXPECT_FALSE(CheckSlip(straight, 1).verdict == Verdict::kFail);
   EXPECT_FALSE(straight.reliability.smallest);
+  EXPECT_GT(straight.unseen_W.norm(), 5);
   std::vector<Station> in = PassedTwice{.size = 2, .from = 440, .to = 460}.Stations();
   std::erase_if(in, [](const Station& s) { return s.pass == Pass::kOut; });
   const RunSlip once = FindSlip(Job{}, 0, in, 1);

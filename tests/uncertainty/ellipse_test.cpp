@@ -1,6 +1,7 @@
 #include "wellgyro/uncertainty/ellipse.h"
 
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -85,6 +86,19 @@ TEST(Ellipse, HighSideFrame) {
     const Matrix3d cov = axes.col(i) * axes.col(i).transpose();
     EXPECT_LT((ToHighSide(cov, inclination, azimuth) - expected).norm(), 1e-14);
   }
+}
+
+TEST(Ellipse, AboutPointsIsTheLeastThatHoldsThemAll) {
+  const std::vector<Eigen::Vector2d> points{{2, 0}, {0, 1}, {0.5, 0.5}, {-1, 0.2}};
+  const Eigen::Matrix2d ellipse = EllipseAbout(points);
+  EXPECT_NEAR(ellipse(0, 0), 4, 0.02);
+  EXPECT_NEAR(ellipse(1, 1), 1, 0.02);
+  EXPECT_NEAR(ellipse(0, 1), 0, 0.02);
+  // One shift alone has an ellipse without width.
+  const Eigen::Matrix2d line = EllipseAbout(std::vector<Eigen::Vector2d>{{3, 4}});
+  EXPECT_NEAR(line.trace(), 25, 0.01);
+  EXPECT_LT(line.determinant(), 0.01);
+  EXPECT_TRUE(EllipseAbout({}).isZero());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wellgyro/estimate/layout.h"
+#include "wellgyro/estimate/run_solver.h"
 #include "wellgyro/estimate/start.h"
 
 namespace wellgyro {
@@ -16,6 +17,7 @@ struct Solution {
   NodeGuess nodes;
   BorderVector border;
   std::optional<double> swing;  ///< of the setup [rad/s]
+  RollBegin begin;
 };
 
 /// Keeps another solution than the chosen one, of `evidence` and `nodes`, if it comes near it. One

@@ -28,6 +28,8 @@ constexpr int kSolveIterations = 40;  // at most, before the scales of the roll 
 // A sum of squares this many sigmas above its freedom is not chance, P(x > 4) = 3.2e-5: one run in
 // 30 000.
 constexpr double kTooLarge = 4;
+// Two that are within a sigma of one minimum: their evidence is within half its square of it.
+constexpr double kSameEvidence = 1;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
@@ -204,12 +206,35 @@ std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const Run
   return guesses;
 }
 
+/// Where a solver stood before it sought the scales of the roll.
+struct Approached {
+  std::optional<double> swing;  ///< of the setup [rad/s]
+  RollBegin begin;
+  double evidence = 0;
+  NodeGuess nodes;
+};
+
 struct Choice {
   std::unique_ptr<RunSolver> solver;  ///< of the solution of greatest evidence; null: none
   SolveReport report;
   std::vector<Solution> rivals;      ///< others that come near it
   double least_evidence = HUGE_VAL;  ///< of all guesses, those that lead to no solution too
+  std::vector<Approached> approached;
 };
+
+/// What follows from where the solver stands has been tried: as the same model it was there before,
+/// to a sigma over all unknowns together. Else it is noted.
+bool WasThere(const RunSolver& solver, const RollBegin& begin, Choice& choice) {
+  if (!solver.IsNear()) return false;
+  Approached now{solver.setup().swing, begin, solver.Evidence(), solver.nodes()};
+  const bool there = std::ranges::any_of(choice.approached, [&](const Approached& before) {
+    return before.swing == now.swing && before.begin == now.begin &&
+           std::abs(before.evidence - now.evidence) < kSameEvidence &&
+           SameSolution(before.nodes, now.nodes);
+  });
+  if (!there) choice.approached.push_back(std::move(now));
+  return there;
+}
 
 /// Keeps another solution, once, where it comes near the chosen one.
 void AddRival(Solution other, Choice& choice) {
@@ -243,22 +268,32 @@ EstimateSetup SetupWith(const EstimateSetup& setup, std::optional<double> swing)
   return with;
 }
 
-/// Solves from one guess, with a swing of this frequency or none; keeps the solution where it
-/// betters those before. Returns where it ended.
+/// Solves from one guess, with a swing of this frequency or none, unless it leads where one before
+/// it did; keeps the solution where it betters those before. Returns where it ended.
 NodeGuess SolveFrom(const NodeGuess& guess, const Problem& p, std::optional<double> swing,
                     const RollBegin& begin, Solution& solution, Choice& choice) {
   auto solver = std::make_unique<RunSolver>(SetupWith(p.setup, swing), p.knots, p.before);
   solver->nodes() = guess;
   const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
-  const SolveReport report = solver->Solve(kSolveIterations, best + kDecides, begin);
+  solver->Approach(kSolveIterations, begin);
+  if (WasThere(*solver, begin, choice)) return solver->nodes();
+  const SolveReport report = solver->Settle(best + kDecides);
   NodeGuess nodes = solver->nodes();
   choice.least_evidence = std::min(choice.least_evidence, report.evidence);
   if (!report.converged || !(report.evidence < solution.evidence)) return nodes;
-  solution = {report.evidence, nodes, solver->border(), swing};
+  solution = {report.evidence, nodes, solver->border(), swing, begin};
   if (choice.solver && !(report.evidence < choice.report.evidence)) return nodes;
   choice.report = report;
   choice.solver = std::move(solver);
   return nodes;
+}
+
+/// Solves from where a walk led, as that and the swing that it shows, where only it shows one.
+void SolveAsHiddenSwing(const NodeGuess& walk, const Problem& p, Solution& solution,
+                        Choice& choice) {
+  if (p.swing || !p.may_swing || !p.hides_roll) return;
+  const std::optional<double> swing = SwingOf(p.knots, walk);
+  if (swing) SolveFrom(walk, p, swing, {}, solution, choice);
 }
 
 /// Solves from one guess with the roll rate as the setup has it, a random walk, and, where it
@@ -272,18 +307,20 @@ void SolveFrom(const NodeGuess& guess, const Problem& p, Solution& solution, Cho
     NodeGuess nodes = SolveFrom(guess, p, p.setup.swing, begin, solution, choice);
     if (walk.empty() || solution.evidence < evidence) walk = std::move(nodes);
   }
-  if (p.swing || !p.may_swing || !p.hides_roll) return;
-  const std::optional<double> swing = SwingOf(p.knots, walk);
-  if (swing) SolveFrom(walk, p, swing, {}, solution, choice);
+  SolveAsHiddenSwing(walk, p, solution, choice);
 }
 
-/// Solves again from nearby a solution as long as that is better, where it may be a local minimum.
+/// Solves again from nearby a solution, as the model that fits best there, as long as that is
+/// better, where it may be a local minimum.
 void SolveAbout(const Problem& p, Solution& solution, Choice& choice) {
   for (int i = 0; i < kAboutMost && p.hides_roll && !solution.nodes.empty(); ++i) {
     const double evidence = solution.evidence;
-    const NodeGuess about = RollAbout(SetupWith(p.setup, solution.swing), p.knots, p.before,
-                                      solution.nodes, solution.border);
-    SolveFrom(about, p, solution, choice);
+    const std::optional<double> swing = solution.swing;
+    const RollBegin begin = solution.begin;
+    const NodeGuess about =
+        RollAbout(SetupWith(p.setup, swing), p.knots, p.before, solution.nodes, solution.border);
+    const NodeGuess nodes = SolveFrom(about, p, swing, begin, solution, choice);
+    SolveAsHiddenSwing(nodes, p, solution, choice);
     if (!(solution.evidence < evidence - kDecides)) return;
   }
 }

@@ -167,19 +167,19 @@ bool RunSolver::SolveWithNoise(double gyro, double accel) {
   setup_.errors.accel_noise *= accel;
   SolveReport report;
   Finish(HUGE_VAL, report);
-  return elimination_.decrement() < kNear;
+  return IsNear();
 }
 
-bool RunSolver::Approach(int iterations) {
-  BeginScales({});
-  SolveReport report;
-  return Iterate(iterations, kNear, report) || elimination_.decrement() < kFar;
-}
-
-SolveReport RunSolver::Solve(int iterations, double least, const RollBegin& begin) {
-  SolveReport report;
+bool RunSolver::Approach(int iterations, const RollBegin& begin) {
   BeginScales(begin);
-  Iterate(iterations, kNear, report, kCreeps);
+  SolveReport report;
+  return Iterate(iterations, kNear, report, kCreeps) || elimination_.decrement() < kFar;
+}
+
+bool RunSolver::IsNear() const { return elimination_.decrement() < kNear; }
+
+SolveReport RunSolver::Settle(double least) {
+  SolveReport report;
   const bool measured = std::all_of(knots_.begin(), knots_.end(),
                                     [](const RunKnot& k) { return k.increment.has_axial; });
   if (!measured) {
@@ -194,7 +194,7 @@ SolveReport RunSolver::Solve(int iterations, double least, const RollBegin& begi
   scales_.follows_hole = true;
   HoldRollWeights();
   Finish(least, report);
-  report.converged = elimination_.decrement() < kNear;
+  report.converged = IsNear();
   report.sums = block_.sums();
   report.evidence = Evidence();
   report.roll_walk = scales_.roll_walk;

@@ -39,6 +39,8 @@ struct RollBegin {
   /// is hidden from gravity. From a share of 1 the robust weights of the demonstration's starts
   /// take fifty steps to settle.
   double share = 1e-2;
+
+  bool operator==(const RollBegin&) const = default;
 };
 /// The least share [1]: it leaves the roll rate 1e-4 rad/s over 10 s, less than the gyros' noise
 /// shows.
@@ -68,12 +70,16 @@ class RunSolver : public RunRows {
   /// Places every node by a forward pass from this attitude of node 0, see GuessPass, with
   /// HiddenRoll() of the knots.
   void Begin(const Eigen::Matrix3d& R_LT, std::span<const double> hidden_roll);
-  /// Goes into the minimum about where it stands, near enough to know it. False: there is none
-  /// within `iterations` steps.
-  bool Approach(int iterations);
-  /// Relinearises until the attitudes stay, at most `iterations` times before the roll's scales are
-  /// sought. Not to the end where the evidence stays above `least`.
-  SolveReport Solve(int iterations, double least = HUGE_VAL, const RollBegin& begin = {});
+  /// Goes into the minimum about where it stands, with the roll's scales as they begin, near enough
+  /// to know it. False: there is none within `iterations` steps.
+  bool Approach(int iterations, const RollBegin& begin = {});
+  /// After Approach(): seeks the roll's scales and relinearises until the attitudes stay. Not to
+  /// the end where the evidence stays above `least`.
+  SolveReport Settle(double least = HUGE_VAL);
+  /// Of the last linearisation, see SolveReport.
+  double Evidence() const;
+  /// The last step was of less than a sigma over all unknowns together.
+  bool IsNear() const;
   /// Takes the gyros' and the accelerometers' white noise so many times as large as before and goes
   /// on from where it stands. False: it does not converge.
   bool SolveWithNoise(double gyro, double accel);
@@ -119,7 +125,6 @@ class RunSolver : public RunRows {
   bool Advance(SolveReport& report);
   void Finish(double least, SolveReport& report);
   bool Iterate(int most, double stays, SolveReport& report, double creeps = HUGE_VAL);
-  double Evidence() const;
   double EvidenceOf(double tried, double least, Scales scales, SolveReport& report);
   double FindDecade(double least, double most, Scales scales, SolveReport& report);
   void FindBetween(double evidence, double& scale, SolveReport& report);

@@ -42,6 +42,9 @@ struct RunReliability {
 struct RunSlip {
   RunCause cause;  ///< without `ln_bayes` where nothing tells it
   RunReliability reliability;
+  /// Shift of the end by the largest there is, where a fifth of the depths or more would not show
+  /// it; else zero [m].
+  Eigen::Vector3d unseen_W = Eigen::Vector3d::Zero();
 };
 
 /// Which fault explains a run, and which could hide in it.
@@ -51,10 +54,6 @@ struct RunDiagnosis {
   std::string second;                ///< the likeliest then; empty: it was not looked for
   std::vector<RunCause> causes;      ///< the likeliest first
   std::vector<RunReliability> reliability;
-  /// Least ellipse about the end that holds every horizontal shift of `reliability`: those e with
-  /// e' hidden^-1 e <= 1; its half axes are the roots of the eigenvalues [m^2].
-  Eigen::Matrix2d hidden = Eigen::Matrix2d::Zero();
-  std::string hidden_cause;  ///< the one that reaches furthest; empty: none does
 };
 
 }  // namespace wellgyro

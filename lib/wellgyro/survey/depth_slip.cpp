@@ -24,6 +24,9 @@ using Eigen::VectorXd;
 
 // Of a wheel that slips, 1 sigma [m]: what practice allows, 1 in 1000, on 1.5 km.
 constexpr double kSlipSize = 1.5;
+// Of depths at which one may begin, that show the largest: four in five, as often as what counts as
+// noticed is.
+constexpr double kShown = 0.8;
 constexpr std::ptrdiff_t kLeastPairs = 5;  // size, offset and common error, and two to spare
 // dI/ds of a hole that tells no slip [rad/m]: five sizes turn it by 7.5 m 1e-9 = 4e-7 deg, below
 // the last digit of a listing.
@@ -179,13 +182,18 @@ RunSlip FindSlip(const Job& job, double sigma_scale, std::span<const Station> pa
   cause.remedy = "compare depth with a tally or marks where it slipped, correct it, run again";
   const Station* end = DeepestOfRun(passes, run);
   if (end == nullptr) return slip;
-  slip.reliability.shift_W = -kLargestFault * kSlipSize * end->tangent_L;
+  const double largest = kLargestFault * kSlipSize;
+  slip.unseen_W = slip.reliability.shift_W = -largest * end->tangent_L;
   const std::vector<SlipPair> pairs = SlipPairsOf(job, sigma_scale, passes, run);
   const bool bends =
       std::ranges::any_of(pairs, [](const SlipPair& p) { return std::abs(p.slope) > kStraight; });
   if (std::ssize(pairs) < kLeastPairs || !bends) return slip;
   SlipScan scan = SlipScanOf(pairs, std::sqrt(2.0) * job.errors.depth_sigma);
   if (scan.smallest.empty()) return slip;
+  const auto shown =
+      std::ranges::count_if(scan.smallest, [&](const auto& at) { return at.first < largest; });
+  const double share = static_cast<double>(shown) / static_cast<double>(std::ssize(pairs) - 1);
+  if (share > kShown) slip.unseen_W.setZero();
   cause.ln_bayes = scan.ln_bayes;
   cause.size = scan.size;
   cause.sigma = scan.sigma;
@@ -193,7 +201,7 @@ RunSlip FindSlip(const Job& job, double sigma_scale, std::span<const Station> pa
   cause.shift_W = -scan.size * end->tangent_L;
   const auto middle = scan.smallest.begin() + std::ssize(scan.smallest) / 2;
   std::ranges::nth_element(scan.smallest, middle);
-  if (!(middle->first < kLargestFault * kSlipSize)) return slip;
+  if (!(middle->first < largest)) return slip;
   slip.reliability.smallest = middle->first;
   slip.reliability.md = middle->second;
   slip.reliability.shift_W = -middle->first * end->tangent_L;

@@ -24,7 +24,8 @@ namespace wellgyro {
 /// small. `shift_W`: of a slip on the way in; one on the way out moves no station of it. Without
 /// two passes, or in a hole that does not bend, nothing tells it: `ln_bayes` is absent.
 ///
-/// `reliability`: the smallest that would be noticed four times in five at half of the depths.
+/// `reliability`: the smallest that would be noticed four times in five at half of the depths. In a
+/// straight part above all bends none is, see RunSlip::unseen_W.
 WELLGYRO_EXPORT RunSlip FindSlip(const Job& job, double sigma_scale,
                                  std::span<const Station> passes, std::int32_t run);
 

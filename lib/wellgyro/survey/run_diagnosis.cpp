@@ -18,8 +18,6 @@ namespace wellgyro {
 namespace {
 
 using Eigen::Index;
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
 using Kind = CauseSpec::Kind;
 
 // Of runs, those with some fault before anything is known of them. No field statistics are
@@ -106,18 +104,6 @@ RunReliability ReliabilityOf(const KnownCause& entry, const CauseTest& test,
 bool HasReliability(const KnownCause& entry, const CauseTest& test) {
   return test.tested && entry.kind != Kind::kGyroNoise && entry.kind != Kind::kAccelNoise &&
          entry.kind != Kind::kOther && entry.kind != Kind::kGiven;
-}
-
-void AddHidden(RunDiagnosis& diagnosis) {
-  std::vector<Vector2d> points;
-  double most = 0;
-  for (const RunReliability& hidden : diagnosis.reliability) {
-    points.push_back(hidden.shift_W.head<2>());
-    if (points.back().norm() <= most) continue;
-    most = points.back().norm();
-    diagnosis.hidden_cause = hidden.code;
-  }
-  diagnosis.hidden = EllipseAbout(points);
 }
 
 /// The likeliest causes that together have kNamed of the probability that there is one.
@@ -257,7 +243,6 @@ RunDiagnosis DiagnosisOf(const Diagnosis& tests, std::span<const RunKnot> knots)
   clean.ln_bayes = 0;
   clean.posterior = std::exp(none - sum);
   std::ranges::stable_sort(diagnosis.causes, IsLikelier);
-  AddHidden(diagnosis);
   return diagnosis;
 }
 
@@ -372,32 +357,6 @@ std::vector<RunCause> CausesOf(const RunSummary& run, std::span<const Check> che
   }
   causes.insert(causes.end(), beside.begin(), beside.end());
   return causes;
-}
-
-/// Khachiyan's algorithm for centred ellipses: the weight of a point grows as it stands out of the
-/// ellipse of all.
-Matrix2d EllipseAbout(std::span<const Vector2d> points) {
-  double most = 0;
-  for (const Vector2d& p : points) most = std::max(most, p.norm());
-  if (!(most > 0) || !std::isfinite(most)) return Matrix2d::Zero();
-  // Points on one line have an ellipse of no width: given a thousandth.
-  const double least = 1e-6 * most * most;
-  std::vector<double> weight(points.size(), 1 / static_cast<double>(points.size()));
-  Matrix2d spread = Matrix2d::Zero();
-  for (int i = 0; i < 200; ++i) {
-    spread = least * Matrix2d::Identity();
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      spread += weight[k] * points[k] * points[k].transpose();
-    }
-    const Matrix2d inverse = spread.inverse();
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      weight[k] *= points[k].dot(inverse * points[k]) / 2;
-    }
-  }
-  const Matrix2d inverse = spread.inverse();
-  double out = 0;
-  for (const Vector2d& p : points) out = std::max(out, p.dot(inverse * p));
-  return out * spread;
 }
 
 }  // namespace wellgyro

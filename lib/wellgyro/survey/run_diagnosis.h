@@ -45,7 +45,4 @@ void CheckDiagnosis(const RunSummary& run, std::span<const Station> passes,
 WELLGYRO_EXPORT std::vector<RunCause> CausesOf(const RunSummary& run,
                                                std::span<const Check> checks);
 
-/// The least centred ellipse e' E^-1 e <= 1 that holds all points.
-Eigen::Matrix2d EllipseAbout(std::span<const Eigen::Vector2d> points);
-
 }  // namespace wellgyro

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -44,6 +45,31 @@ Eigen::Matrix2d EllipseAboutSum(const Eigen::Matrix2d& a, const Eigen::Matrix2d&
   if (!(of_a > 0)) return b;
   if (!(of_b > 0)) return a;
   return (1 + of_b / of_a) * a + (1 + of_a / of_b) * b;
+}
+
+// The weight of a point grows as it stands out of the ellipse of all.
+Eigen::Matrix2d EllipseAbout(std::span<const Eigen::Vector2d> points) {
+  double most = 0;
+  for (const Eigen::Vector2d& p : points) most = std::max(most, p.norm());
+  if (!(most > 0) || !std::isfinite(most)) return Eigen::Matrix2d::Zero();
+  // Points on one line have an ellipse of no width: given a thousandth.
+  const double least = 1e-6 * most * most;
+  std::vector<double> weight(points.size(), 1 / static_cast<double>(points.size()));
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < 200; ++i) {
+    spread = least * Eigen::Matrix2d::Identity();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      spread += weight[k] * points[k] * points[k].transpose();
+    }
+    const Eigen::Matrix2d inverse = spread.inverse();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      weight[k] *= points[k].dot(inverse * points[k]) / 2;
+    }
+  }
+  const Eigen::Matrix2d inverse = spread.inverse();
+  double out = 0;
+  for (const Eigen::Vector2d& p : points) out = std::max(out, p.dot(inverse * p));
+  return out * spread;
 }
 
 SeenEllipse EllipseSeenAlong(const Matrix3d& cov, const Vector3d& sight, double sigmas) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include <Eigen/Core>
 
 #include "wellgyro/base/export.h"
@@ -28,6 +30,10 @@ WELLGYRO_EXPORT ErrorEllipse HorizontalEllipse(const Eigen::Matrix3d& cov_W, dou
 /// p^2 = tr a / tr b (Kurzhanski and Valyi 1997, 2.2). Its half axis along n is at least the two
 /// half widths together; where `a` and `b` are alike but for a factor, it is just that.
 WELLGYRO_EXPORT Eigen::Matrix2d EllipseAboutSum(const Eigen::Matrix2d& a, const Eigen::Matrix2d& b);
+
+/// The least ellipse e' E^-1 e <= 1 that holds all points [m^2], by Khachiyan's algorithm for
+/// centred ellipses; zero without a point. One line of points has a width of a thousandth of it.
+WELLGYRO_EXPORT Eigen::Matrix2d EllipseAbout(std::span<const Eigen::Vector2d> points);
 
 /// The ellipse that `cov` of any frame, seen along the unit vector `sight`, draws on the plane
 /// across it: semi-axes as vectors in that plane, the longer first, at `sigmas` [m].

@@ -76,8 +76,7 @@ Survey EndWithUnseenFaults(Quality quality) {
   fit->diagnosis->reliability.resize(2);
   fit->diagnosis->reliability[0].shift_W << 2, 0, 9;
   fit->diagnosis->reliability[1].shift_W << 0, -4, 0;
-  fit->diagnosis->hidden.diagonal() << 4, 16;
-  fit->diagnosis->hidden_cause = "gyro_bias_step_x";
+  fit->diagnosis->reliability[1].code = "gyro_bias_step_x";
   run.fit = fit;
   survey.runs = {run};
   return survey;
@@ -129,6 +128,19 @@ TEST(Summary, WhatTheRunWouldNotShowIsNamed) {
   EXPECT_THAT(SummaryText(survey),
               HasSubstr("\non trust       accel_bias_x, accel_bias_y: this run "
                         "would not show them at any size\n"));
+}
+
+// Chance has 4.9 m. The smallest that shows is one more fault, 12 m across and 12 m down.
+TEST(Summary, ASlipOfDepthIsAmongTheUnseenFaults) {
+  Survey survey = EndWithUnseenFaults(Quality::kGood);
+  const auto slip = std::make_shared<RunSlip>();
+  slip->reliability = {.code = "depth_slip", .smallest = 2, .shift_W = {0, 12, 12}};
+  survey.runs[0].slip = slip;
+  EXPECT_THAT(SummaryText(survey), HasSubstr("TVD +- 13.96 m; most by depth_slip, 12.00 m\n"));
+  EXPECT_THAT(SummaryText(survey), testing::Not(HasSubstr("on trust")));
+  // On a straight part nothing shows it.
+  slip->unseen_W << 0, 30, 30;
+  EXPECT_THAT(SummaryText(survey), HasSubstr("\non trust       depth_slip: this run would not"));
 }
 
 TEST(SummaryText, NothingIsSaidToBeNothing) { EXPECT_EQ(SummaryText({}), "no station\n"); }

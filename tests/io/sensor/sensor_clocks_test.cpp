@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/io/sensor/clock_join_internal.h"
 #include "wellgyro/io/sensor/sensor_csv.h"
 #include "wellgyro/io/sensor/sensor_files.h"
 
@@ -116,30 +117,55 @@ TEST(SensorFiles, DepthOnAClockThatNoSampleHasIsRefused) {
   EXPECT_FALSE(Do(scratch, {"utc.csv", "rest.csv"}, StandsJob()).report);
 }
 
-// A logger that stamps marks each second notes a stop's ends to half of that, and the tie by stops
-// is off by more than 5 sigmas of what starts and stops tell of the lag: the tie's sigma is in the
-// check.
-TEST(SensorFiles, ALagThatTheTieOfTheClocksAllowsFailsNothing) {
-  const Scratch scratch;
-  const StandsTables tables = TablesOf(Stands(), false);
-  scratch.Write("tool.csv", tables.samples);
-  scratch.Write("depth.csv", tables.depth);
-  const SurveyedTables done = Do(scratch, {"tool.csv", "depth.csv"}, StandsJob());
-  ASSERT_TRUE(done.report) << done.report.fault().text;
-  ASSERT_TRUE(done.report->clock);
-  const double sigma = done.report->clock->Sigma(done.report->clock->tool);
-  const auto lag = std::ranges::find(done.survey.checks, "depth_lag", &Check::code);
-  ASSERT_NE(lag, done.survey.checks.end());
-  ASSERT_TRUE(lag->value && lag->sigma && lag->limit);
-  EXPECT_GE(*lag->sigma, sigma);
-  EXPECT_GE(*lag->limit, 5 * sigma);
-  EXPECT_NE(lag->verdict, Verdict::kFail);
-  // With both clocks in the samples there is no tie by stops to be unsure of.
-  scratch.Write("both.csv", TablesOf(Stands(), true).samples);
-  const SurveyedTables both = Do(scratch, {"both.csv", "depth.csv"}, StandsJob());
-  const auto sharp = std::ranges::find(both.survey.checks, "depth_lag", &Check::code);
-  ASSERT_NE(sharp, both.survey.checks.end());
-  EXPECT_LT(sharp->sigma.value_or(1), 0.1 * sigma);
+Simulation SlowStands() {
+  Simulation simulation = Stands();
+  for (RunStep& step : simulation.run.steps) {
+    if (auto* move = std::get_if<RunMove>(&step)) move->ramp = 10;
+  }
+  return simulation;
+}
+
+/// By which a tie is off where the simulation has the tool's clock zero [s].
+double ErrorOf(const StopMatch& match, const Simulation& simulation) {
+  return (match.ToUtc(ToolTime{}) - simulation.streams.begin_utc).seconds();
+}
+
+// A string that takes ten seconds to come to its speed is within two centimetres of its rest for
+// 0.9 s more, before it as after it.
+TEST(ClockJoin, RestsTellTheOffsetWithinTheStepsOfTheirEnds) {
+  for (const Simulation& simulation : {Stands(), SlowStands()}) {
+    const Scratch scratch;
+    const StandsTables tables = TablesOf(simulation, false);
+    scratch.Write("tool.csv", tables.samples);
+    scratch.Write("depth.csv", tables.depth);
+    const auto samples = scratch.path() / "tool.csv", depth = scratch.path() / "depth.csv";
+    const auto joined = sensors::JoinByStops({samples, depth}, StandsJob());
+    ASSERT_TRUE(joined) << joined.fault().text;
+    const double sigma = joined->match.Sigma(ToolTime{});
+    EXPECT_LT(std::abs(ErrorOf(joined->match, simulation)), 3 * sigma);
+    EXPECT_GT(sigma, 0.2) << "blocks of a second, marks twice a second";
+    EXPECT_LT(sigma, 0.3);
+  }
+}
+
+TEST(SensorFiles, ClocksAreJoinedByTheMotionThatIsFelt) {
+  for (const Simulation& simulation : {Stands(), SlowStands()}) {
+    const Scratch scratch;
+    const StandsTables tables = TablesOf(simulation, false);
+    scratch.Write("tool.csv", tables.samples);
+    scratch.Write("depth.csv", tables.depth);
+    const SurveyedTables done = Do(scratch, {"tool.csv", "depth.csv"}, StandsJob());
+    ASSERT_TRUE(done.report) << done.report.fault().text;
+    ASSERT_TRUE(done.report->clock);
+    const double sigma = done.report->clock->Sigma(done.report->clock->tool);
+    EXPECT_LT(std::abs(ErrorOf(*done.report->clock, simulation)), 3 * sigma);
+    EXPECT_LT(sigma, 0.02);
+    const auto lag = std::ranges::find(done.survey.checks, "depth_lag", &Check::code);
+    ASSERT_NE(lag, done.survey.checks.end());
+    ASSERT_TRUE(lag->value && lag->sigma);
+    EXPECT_GE(*lag->sigma, sigma) << "the tie's error is a lag of the marks";
+    EXPECT_EQ(lag->verdict, Verdict::kPass);
+  }
 }
 
 TEST(SensorFiles, AClockThatIsSetWrongIsTold) {

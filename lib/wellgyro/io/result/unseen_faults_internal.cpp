@@ -17,34 +17,44 @@ const RunDiagnosis* DiagnosisOfTheEnd(const Survey& survey) {
   return nullptr;
 }
 
+const RunSlip* SlipOf(const Survey& survey, std::int32_t run) {
+  const auto of = std::ranges::find(survey.runs, run, &RunSummary::run);
+  return of == survey.runs.end() ? nullptr : of->slip.get();
+}
+
 }  // namespace
 
 std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey) {
   if (survey.chosen.empty()) return std::nullopt;
   const Station& end = survey.chosen.back();
   const RunDiagnosis* found = DiagnosisOfTheEnd(survey);
-  if (!found || found->hidden_cause.empty() || Has(end.quality, Quality::kUnfit)) {
-    return std::nullopt;
-  }
+  if (!found || Has(end.quality, Quality::kUnfit)) return std::nullopt;
+  std::vector<RunReliability> faults = found->reliability;
+  const RunSlip* slip = SlipOf(survey, end.run);
+  if (slip != nullptr && slip->reliability.smallest) faults.push_back(slip->reliability);
+  std::vector<Eigen::Vector2d> shifts;
+  for (const RunReliability& fault : faults) shifts.push_back(fault.shift_W.head<2>());
   const double sigmas = ConfidenceFactor(kConfidence, 2);
   const Eigen::Matrix2d by_chance = sigmas * sigmas * end.cov_p_WT_W.topLeftCorner<2, 2>();
   Eigen::Matrix3d about = Eigen::Matrix3d::Zero();
-  about.topLeftCorner<2, 2>() = EllipseAboutSum(found->hidden, by_chance);
+  about.topLeftCorner<2, 2>() = EllipseAboutSum(EllipseAbout(shifts), by_chance);
   UnseenFaults unseen;
   unseen.bound = HorizontalEllipse(about / (sigmas * sigmas), kConfidence);
-  unseen.cause = found->hidden_cause;
   const double chance = HorizontalEllipse(end.cov_p_WT_W, kConfidence).semi_major;
   double deep = 0;
-  for (const RunReliability& fault : found->reliability) {
+  for (const RunReliability& fault : faults) {
     const double shift = fault.shift_W.head<2>().norm();
-    unseen.shift = std::max(unseen.shift, shift);
+    if (shift > unseen.shift) {
+      unseen.shift = shift;
+      unseen.cause = fault.code;
+    }
     deep = std::max(deep, std::abs(fault.shift_W.z()));
     if (!fault.smallest && shift > chance) unseen.unshown.push_back(fault.code);
   }
-  for (const RunSummary& run : survey.runs) {
-    if (run.run != end.run || !run.slip || run.slip->reliability.smallest) continue;
-    if (run.slip->reliability.shift_W.norm() > chance) unseen.unshown.emplace_back("depth_slip");
+  if (slip != nullptr && slip->unseen_W.norm() > chance) {
+    unseen.unshown.emplace_back("depth_slip");
   }
+  if (unseen.cause.empty()) return std::nullopt;
   const bool axes_told =
       std::none_of(survey.checks.begin(), survey.checks.end(), [&](const Check& c) {
         return c.run == end.run && c.code == "axes" && c.verdict == Verdict::kNotDone;

@@ -12,20 +12,23 @@
 
 #include <fmt/core.h>
 
-#include "wellgyro/alignment/still_detector.h"
 #include "wellgyro/io/exchange/exchange.h"
+#include "wellgyro/io/sensor/clock_join_internal.h"
 #include "wellgyro/io/sensor/gyro_raw.h"
 #include "wellgyro/io/sensor/sensor_csv.h"
 #include "wellgyro/io/sensor/sensor_layout_internal.h"
+#include "wellgyro/io/sensor/sensor_rows_internal.h"
 #include "wellgyro/io/sha256.h"
 
 namespace wellgyro {
 namespace {
 
-// [s], the shortest stop that joins clocks: several times what its ends are noted to, some seconds.
-constexpr double kRest = 20;
-// [s] between marks of one rest: a logger that writes when depth changes is silent in it.
-constexpr double kRestGap = 60;
+using sensors::ClockTables;
+using sensors::ForEach;
+using sensors::JoinByStops;
+using sensors::JoinedClocks;
+using sensors::RefineByMotion;
+
 // [s] that depth is pushed ahead of samples: more than any of them waits for, a tenth of a MB of
 // marks.
 constexpr double kAhead = 120;
@@ -57,20 +60,6 @@ Result<InputFile> Noted(const std::filesystem::path& path) {
                    .sha256 = digest.HexDigest()};
 }
 
-/// Every row of a table, or the fault of one.
-template <class Record, class Take>
-std::optional<Fault> ForEach(SensorCsv& table, Take take) {
-  SensorCsv::Row row;
-  while (table.Next(row)) take(std::get<Record>(row));
-  return table.fault();
-}
-template <class Record, class Take>
-std::optional<Fault> ForEach(const std::filesystem::path& path, Take take) {
-  Result<SensorCsv> table = SensorCsv::Open(path);
-  if (!table) return table.fault();
-  return ForEach<Record>(*table, take);
-}
-
 /// UTC against the tool's clock, from the pairs that samples carry: straight between two of them,
 /// at the tool's own rate before the first and after the last.
 class ClockPairs {
@@ -99,32 +88,6 @@ class ClockPairs {
     UtcTime utc;
   };
   std::vector<Pair> pairs_;
-};
-
-class RigRests {
- public:
-  void Take(const DepthMark& mark) {
-    const bool goes_on = last_ && std::abs(mark.md - begin_->md) < kRestsWithin &&
-                         (mark.utc - last_->utc).seconds() <= kRestGap;
-    if (!goes_on) {
-      Close();
-      begin_ = mark;
-    }
-    last_ = mark;
-  }
-  std::vector<UtcRest> All() {
-    Close();
-    return std::move(rests_);
-  }
-
- private:
-  void Close() {
-    if (last_ && (last_->utc - begin_->utc).seconds() >= kRest) {
-      rests_.push_back({begin_->utc, last_->utc});
-    }
-  }
-  std::optional<DepthMark> begin_, last_;
-  std::vector<UtcRest> rests_;
 };
 
 class Joiner {
@@ -232,39 +195,22 @@ class Joiner {
                        "whose stops tell it",
                    .source = samples_.string()};
     }
-    RigRests rig;
-    if (auto fault = ForEach<DepthMark>(depth_, [&](const DepthMark& m) { rig.Take(m); })) {
-      return fault;
-    }
-    std::optional<SampleStamp> first, last;
-    StillSetup setup{.gyro = job_.noise, .errors = job_.errors};
-    setup.min_still = Duration::Seconds(kRest);
-    StillDetector still(setup);
-    std::vector<ToolRest> tool;
-    const auto note = [&](const std::optional<StillWindow>& window) {
-      if (window) tool.push_back({window->begin, window->end});
-    };
-    auto fault = ForEach<ImuSample>(samples_, [&](const ImuSample& sample) {
-      if (!first) first = sample.stamp;
-      last = sample.stamp;
-      note(still.Push(sample, AlongHole{}));
-    });
-    if (fault) return fault;
-    note(still.Flush());
-    const std::vector<UtcRest> rests = rig.All();
-    const Result<StopMatch> match = MatchStops(tool, rests);
-    if (!match) {
+    const ClockTables tables{samples_, depth_};
+    Result<JoinedClocks> joined = JoinByStops(tables, job_);
+    if (!joined) {
       if (has_utc_) return std::nullopt;
-      Fault why = match.fault();
-      why.source = samples_.string();
+      Fault why = joined.fault();
+      if (why.source.empty()) why.source = samples_.string();
       return why;
     }
-    report_.clock = *match;
+    StopMatch& match = joined->match;
     if (has_utc_) {
-      CompareStamps(*match, *first, *last);
+      CompareStamps(*joined);
     } else {
-      surveyor_.TieClock(match->Sigma(match->tool));  // the lag is a mean over the stops
+      if (auto fault = RefineByMotion(tables, match)) return fault;
+      surveyor_.TieClock(match.Sigma(match.tool));  // the lag is a mean over the stops
     }
+    report_.clock = match;
     return std::nullopt;
   }
 
@@ -289,7 +235,8 @@ class Joiner {
     return fault;
   }
 
-  void CompareStamps(const StopMatch& match, const SampleStamp& first, const SampleStamp& last) {
+  void CompareStamps(const JoinedClocks& joined) {
+    const auto& [match, first, last] = joined;
     const double a = (first.utc - match.ToUtc(first.tool_time)).seconds();
     const double b = (last.utc - match.ToUtc(last.tool_time)).seconds();
     report_.stamps_less_stops = std::abs(a) > std::abs(b) ? a : b;

@@ -29,8 +29,9 @@ struct SensorReport {
 /// not Finish it.
 ///
 /// Samples of a memory or drop tool, which have the tool's time alone, get UTC from its stops
-/// against those of the depth or tally table (stop_match.h). Where they have both, stops more than
-/// three sigmas from the stamps are told to `faults` (kConflict). Depths on the tool's own clock
+/// against those of the depth or tally table (stop_match.h), and from what the accelerometers feel
+/// of starts and stops. Where they have both, stops more than three sigmas from the stamps are told
+/// to `faults` (kConflict). Depths on the tool's own clock
 /// get UTC from the samples' pairs of both clocks; where nothing has UTC, the tool's time stands
 /// for it. Faults: a file or row that cannot be used, two tables of samples, samples without UTC
 /// that cannot be joined, depths on a clock that the samples lack.
