@@ -1,12 +1,16 @@
 // Where the roll may start.
 #include "wellgyro/estimate/roll_start.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/math/random.h"
 
 namespace wellgyro {
@@ -32,6 +36,30 @@ TEST(SpeedStarts, OfTheLastKnotAreThoseOfAll) {
   }
   EXPECT_GT(starts, 50);
   EXPECT_LT(starts, 250);
+}
+
+// -2 ln of 1 / C(n, m) but for half its ln, and of the ratio of N(x; 0, s), averaged over ln s
+// between the bounds of the walk, to N(x; 0, |x|), m times.
+TEST(CostOfStarts, IsThatOfWhichAndOfHowLarge) {
+  constexpr double kChange = 1e-3;
+  const auto density = [](double s) {
+    return std::exp(-0.5 * kChange * kChange / (s * s)) / (s * std::sqrt(kTwoPi));
+  };
+  const double from = std::log(kRollWalkLeast), to = std::log(kRollWalkMost);
+  constexpr int kSteps = 20'000;
+  double mean = 0;
+  for (int i = 0; i < kSteps; ++i)
+    mean += density(std::exp(from + (to - from) * (i + 0.5) / kSteps));
+  mean /= kSteps;
+  const double size = -2 * std::log(mean / density(kChange));
+  for (const auto& [m, n] : {std::pair(1, 1000), std::pair(7, 1042), std::pair(406, 1042)}) {
+    std::vector<double> starts(static_cast<std::size_t>(n), 0);
+    std::fill_n(starts.begin(), m, 0.02);
+    const double which = 2 * (std::lgamma(n + 1) - std::lgamma(m + 1) - std::lgamma(n - m + 1));
+    EXPECT_NEAR(CostOfStarts(starts), which + m * size, 0.01 * m * size + std::log(n)) << m;
+  }
+  EXPECT_EQ(CostOfStarts(std::vector<double>(50, 0.)), 0);
+  EXPECT_NEAR(CostOfStarts(std::vector<double>(50, 1.)), 50 * size, 0.5 * size);
 }
 
 }  // namespace

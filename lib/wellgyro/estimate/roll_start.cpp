@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "wellgyro/base/angle.h"
 #include "wellgyro/math/median.h"
 
 namespace wellgyro {
@@ -101,6 +102,15 @@ std::vector<double> RollStarts(std::span<const RunKnot> knots, std::span<const d
     }
   }
   return starts;
+}
+
+double CostOfStarts(std::span<const double> starts) {
+  const auto all = static_cast<double>(starts.size());
+  const auto m = static_cast<double>(std::ranges::count_if(starts, [](double s) { return s > 0; }));
+  const auto cost = [all](double of) { return of > 0 ? -2 * of * std::log(of / all) : 0; };
+  const double width = std::log(kRollWalkMost / kRollWalkLeast);
+  const double own = std::exp(-0.5) / std::sqrt(kTwoPi);  // N(x; 0, |x|) |x|
+  return cost(m) + cost(all - m) + 2 * m * std::log(2 * width * own);
 }
 
 std::vector<double> SpeedStarts(std::span<const RunKnot> knots) {

@@ -15,6 +15,12 @@ namespace wellgyro {
 /// start [rad]; empty: nothing swings.
 std::vector<double> RollStarts(std::span<const RunKnot> knots, std::span<const double> swung = {});
 
+/// What evidence that takes RollStarts() for sigmas owes, as -2 ln of a probability: they were read
+/// from the run. Which m of n knots they are has exp(-n H(m / n)), H the entropy of a share; and
+/// how large each is, by a sigma anywhere between the bounds of the walk, L = ln(most / least), the
+/// density 1 / (2 L |x|) of a change x in place of 0.242 / |x|, that of its own size for sigma.
+double CostOfStarts(std::span<const double> starts);
+
 /// Of each knot, by how much the roll rate may at most change behind it with the speed along the
 /// hole, seen or not [rad/s]: within 5 s of a change of the speed by 2 rad/m of that; else 0.
 std::vector<double> SpeedStarts(std::span<const RunKnot> knots);

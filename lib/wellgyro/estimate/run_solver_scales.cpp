@@ -37,7 +37,8 @@ void RunSolver::BeginScales(const RollBegin& begin) {
 }
 
 double RunSolver::Evidence() const {
-  double evidence = elimination_.log_determinant() + border_.dot(layout_.information * border_);
+  double evidence = elimination_.log_determinant() + border_.dot(layout_.information * border_) +
+                    CostOfStarts(scales_.roll_start);
   for (const RowSum& sum : block_.sums()) evidence += sum.cost;
   const bool swings = layout_.swing != kAbsent;
   if (swings) evidence += 4 * std::log(kAnyRoll);  // of its prior

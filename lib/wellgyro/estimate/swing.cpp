@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wellgyro/base/angle.h"
+#include "wellgyro/estimate/roll_start.h"
 
 namespace wellgyro {
 namespace {
@@ -34,18 +35,19 @@ struct Point {
 };
 
 /// Stretches of the run between stops, the mean rate of each taken out. What the tool swings by
-/// before a stop has not the phase of what it swings by behind it. `rate_of`: of a knot, where
-/// known.
+/// before a stop has not the phase of what it swings by behind it; where it starts and stops its
+/// mean rate changes by more than a swing may have. `rate_of`: of a knot, where known.
 template <typename RateOf>
 std::vector<std::vector<Point>> Segments(std::span<const RunKnot> knots, const RateOf& rate_of) {
   std::vector<std::vector<Point>> segments(1);
+  const std::vector<double> starts = SpeedStarts(knots);
   double time = 0;
   for (std::size_t k = 0; k < knots.size(); ++k) {
     time += knots[k].increment.seconds;
     const bool whole = !segments.back().empty() &&
                        (knots[k].still || time - segments.back().front().time > kSegment);
     if (whole) segments.emplace_back();
-    if (knots[k].still) continue;
+    if (knots[k].still || starts[k] > 0) continue;
     if (const std::optional<double> rate = rate_of(k)) segments.back().push_back({time, *rate});
   }
   std::erase_if(segments, [](const auto& s) { return s.size() < kLeastSeen; });

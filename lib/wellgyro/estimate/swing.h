@@ -9,8 +9,8 @@
 namespace wellgyro {
 
 /// Angular frequency at which the tool's roll swings, if most of what its rate does where gravity
-/// shows it is one line between a period of a minute and two knots [rad/s]:
-/// within kSwingSigma.
+/// shows it, but for starts and stops, is one line between a period of a minute and two knots
+/// [rad/s]: within kSwingSigma.
 std::optional<double> SwingOf(std::span<const RunKnot> knots);
 /// The same of a solution whose rate walks, wherever the tool moves: a roll that gravity hardly
 /// shows is known there by all that the run says.
