@@ -133,7 +133,8 @@ function(wellgyro_room target room)
   if(ROOM_HEADERS)
     message(FATAL_ERROR "${room}: public headers stand in lib/public-headers.txt")
   endif()
-  if(room IN_LIST numeric_rooms)  # see lib/CMakeLists.txt
+  string(REGEX REPLACE "/.*" "" whole ${room})
+  if(whole IN_LIST numeric_rooms)  # see lib/CMakeLists.txt
     set(target ${numeric})
   elseif(room IN_LIST light_rooms)
     set(target ${light})

@@ -14,7 +14,7 @@
 #include "wellgyro/plan/stop_search.h"
 #include "wellgyro/simulate/simulator.h"
 #include "wellgyro/simulate/tool_errors.h"
-#include "wellgyro/survey/run_now.h"
+#include "wellgyro/survey/run/run_now.h"
 #include "wellgyro/survey/surveyor.h"
 #include "wellgyro/uncertainty/ellipse.h"
 

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/estimated_run.h"
+#include "wellgyro/survey/run/estimated_run.h"
 
 #include <algorithm>
 #include <cmath>

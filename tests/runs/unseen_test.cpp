@@ -16,7 +16,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/math/statistics.h"
-#include "wellgyro/survey/estimated_run.h"
+#include "wellgyro/survey/run/estimated_run.h"
 
 #include "support/hour.h"
 

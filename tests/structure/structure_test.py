@@ -29,15 +29,28 @@ ALLOWED = {
 }
 ALLOWED.update({stage: set(LOW) for stage in STAGES})
 
-# The rooms of io/, and what each sees of the others; all stand on the sources of io/ itself.
-IO = {
-    "": set(),
-    "plot": set(),
-    "exchange": set(),
-    "toml": {"exchange"},
-    "sensor": {"exchange"},
-    "result": {"exchange", "plot", "toml"},
+# The rooms of io/ and of survey/, and what each sees of the others. Those of io/ stand on the sources
+# of io/ itself; the services of survey/ stand on its rooms, which see of it only SURVEY_SHOWS.
+ROOMS_OF = {
+    "io": {
+        "": set(),
+        "plot": set(),
+        "exchange": set(),
+        "toml": {"exchange"},
+        "sensor": {"exchange"},
+        "result": {"exchange", "plot", "toml"},
+    },
+    "survey": {
+        "hole": set(),
+        "stations": {"hole"},
+        "verdict": {"hole", "stations"},
+        "intake": {"stations", "verdict"},
+        "run": {"hole", "stations", "verdict", "intake"},
+        "wells": {"hole", "verdict"},
+        "": {"hole", "stations", "verdict", "intake", "run", "wells"},
+    },
 }
+SURVEY_SHOWS = {"job.h", "job_rules.h", "survey.h", "surveyor.h"}
 
 STD = set("""algorithm array atomic bit cassert cctype cerrno cfloat charconv cinttypes climits cmath
 compare complex condition_variable concepts csignal cstddef cstdint cstdio cstdlib cstring deque
@@ -263,7 +276,7 @@ def Room(path):
     return os.path.relpath(path, LIB).split(os.sep)[0]
 
 
-def IoRoom(path):
+def RoomWithin(path):
     """Of "io/exchange/las.h" "exchange", of "io/words.h" ""."""
     return (path.split("/") + [""])[1] if path.count("/") > 1 else ""
 
@@ -286,22 +299,29 @@ class Structure(unittest.TestCase):
                     problems.append(f"{Place(path, number)}: {room} may not include {target}")
         self.Report(problems)
 
-    def test_rooms_of_io_include_only_along_the_arrows(self):
+    def test_rooms_within_include_only_along_the_arrows(self):
         problems = []
-        for path in Sources(os.path.join(LIB, "io")):
-            room = IoRoom(os.path.relpath(path, LIB))
-            for number, _, target in Includes(path):
-                other = IoRoom(target.removeprefix("wellgyro/"))
-                if target.startswith("wellgyro/io/") and other and other not in IO[room] | {room}:
-                    problems.append(f"{Place(path, number)}: io/{room} may not include {target}")
+        for top, allowed in ROOMS_OF.items():
+            for path in Sources(os.path.join(LIB, top)):
+                room = RoomWithin(os.path.relpath(path, LIB))
+                for number, _, target in Includes(path):
+                    if not target.startswith(f"wellgyro/{top}/"):
+                        continue
+                    other = RoomWithin(target.removeprefix("wellgyro/"))
+                    hidden = (top == "survey" and room and not other
+                              and os.path.basename(target) not in SURVEY_SHOWS)
+                    if hidden or (other and other not in allowed[room] | {room}):
+                        problems.append(f"{Place(path, number)}: {top}/{room} may not include "
+                                        f"{target}")
         self.Report(problems)
 
     def test_every_room_is_known(self):
-        rooms = {d for d in os.listdir(LIB) if os.path.isdir(os.path.join(LIB, d))}
-        self.assertFalse(rooms - set(ALLOWED))
-        rooms = {d for d in os.listdir(os.path.join(LIB, "io"))
-                 if os.path.isdir(os.path.join(LIB, "io", d))}
-        self.assertFalse(rooms - set(IO))
+        def Rooms(top):
+            return {d for d in os.listdir(top) if os.path.isdir(os.path.join(top, d))}
+
+        self.assertFalse(Rooms(LIB) - set(ALLOWED))
+        for top, allowed in ROOMS_OF.items():
+            self.assertFalse(Rooms(os.path.join(LIB, top)) - set(allowed))
 
     def test_public_headers_show_only_std_eigen_and_ours(self):
         problems = []

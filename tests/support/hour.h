@@ -11,7 +11,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
-#include "wellgyro/survey/estimated_run.h"
+#include "wellgyro/survey/run/estimated_run.h"
 #include "wellgyro/survey/run_adjuster.h"
 
 #include "support/drawn_errors.h"

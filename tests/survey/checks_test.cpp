@@ -1,4 +1,4 @@
-#include "wellgyro/survey/checks.h"
+#include "wellgyro/survey/verdict/checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/record/run_fit.h"
-#include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/verdict/verdict.h"
 
 namespace wellgyro {
 namespace {

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/choose.h"
+#include "wellgyro/survey/stations/choose.h"
 
 #include <vector>
 

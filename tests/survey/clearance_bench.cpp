@@ -7,7 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/wells/separation.h"
 
 namespace wellgyro {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/io/toml/error_model_file.h"
-#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/wells/separation.h"
 
 namespace wellgyro {
 namespace {

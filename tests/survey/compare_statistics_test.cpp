@@ -12,7 +12,7 @@
 #include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/math/statistics.h"
-#include "wellgyro/survey/compare.h"
+#include "wellgyro/survey/wells/compare.h"
 
 #include "survey/compared_surveys.h"
 

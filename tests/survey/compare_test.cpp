@@ -1,4 +1,4 @@
-#include "wellgyro/survey/compare.h"
+#include "wellgyro/survey/wells/compare.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -13,7 +13,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/math/rotation.h"
-#include "wellgyro/survey/compare.h"
+#include "wellgyro/survey/wells/compare.h"
 #include "wellgyro/trajectory/trajectory.h"
 
 /// Surveys of one hole with errors drawn from their models.

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/simulate/truth.h"
-#include "wellgyro/survey/path_site.h"
+#include "wellgyro/survey/hole/path_site.h"
 
 #include "support/simulated_survey.h"
 #include "support/small_hole.h"

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/depth_checks.h"
+#include "wellgyro/survey/verdict/depth_checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/depth_slip.h"
+#include "wellgyro/survey/verdict/depth_slip.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/empirical_model.h"
+#include "wellgyro/survey/wells/empirical_model.h"
 
 #include <algorithm>
 #include <cmath>

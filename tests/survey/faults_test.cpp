@@ -15,9 +15,9 @@
 #include "wellgyro/earth/earth.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/simulate/tool_errors.h"
-#include "wellgyro/survey/sample_watch.h"
-#include "wellgyro/survey/truncation_watch.h"
-#include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/intake/sample_watch.h"
+#include "wellgyro/survey/intake/truncation_watch.h"
+#include "wellgyro/survey/verdict/verdict.h"
 
 #include "support/simulated_survey.h"
 

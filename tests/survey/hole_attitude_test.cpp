@@ -1,4 +1,4 @@
-#include "wellgyro/survey/hole_attitude.h"
+#include "wellgyro/survey/hole/hole_attitude.h"
 
 #include <cmath>
 

@@ -6,8 +6,8 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
-#include "wellgyro/survey/common_courses_internal.h"
-#include "wellgyro/survey/hole_roughness_internal.h"
+#include "wellgyro/survey/hole/common_courses_internal.h"
+#include "wellgyro/survey/hole/hole_roughness_internal.h"
 
 namespace wellgyro {
 namespace {

@@ -8,9 +8,9 @@
 
 #include <gmock/gmock.h>
 
+#include "wellgyro/survey/intake/plausible.h"
+#include "wellgyro/survey/intake/sample_counts.h"
 #include "wellgyro/survey/job.h"
-#include "wellgyro/survey/plausible.h"
-#include "wellgyro/survey/sample_counts.h"
 
 #include "support/small_hole.h"
 

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/joined_states.h"
+#include "wellgyro/survey/run/joined_states.h"
 
 #include <cstddef>
 #include <vector>

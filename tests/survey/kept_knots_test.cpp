@@ -1,5 +1,5 @@
 // The knots of a run, kept in less memory, are what they were to the last bit.
-#include "wellgyro/survey/kept_knots.h"
+#include "wellgyro/survey/run/kept_knots.h"
 
 #include <bit>
 #include <cmath>

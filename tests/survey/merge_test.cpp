@@ -1,4 +1,4 @@
-#include "wellgyro/survey/merge.h"
+#include "wellgyro/survey/wells/merge.h"
 
 #include <cmath>
 #include <map>

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/mirrors.h"
+#include "wellgyro/survey/run/mirrors.h"
 
 #include <cmath>
 #include <cstdint>

@@ -6,7 +6,7 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/random.h"
 #include "wellgyro/math/rotation.h"
-#include "wellgyro/survey/pass_covariance_internal.h"
+#include "wellgyro/survey/stations/pass_covariance_internal.h"
 
 namespace wellgyro {
 namespace {

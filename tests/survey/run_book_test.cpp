@@ -1,4 +1,4 @@
-#include "wellgyro/survey/run_book.h"
+#include "wellgyro/survey/run/run_book.h"
 
 #include <cstdint>
 #include <limits>

@@ -1,5 +1,5 @@
 // Which fault explains a simulated run.
-#include "wellgyro/survey/run_diagnosis.h"
+#include "wellgyro/survey/verdict/run_diagnosis.h"
 
 #include <algorithm>
 #include <cmath>

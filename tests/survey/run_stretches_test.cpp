@@ -1,5 +1,5 @@
 // A run in stretches of some twenty seconds, as its charts along time show it.
-#include "wellgyro/survey/run_stretches.h"
+#include "wellgyro/survey/run/run_stretches.h"
 
 #include <memory>
 #include <variant>

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/sample_queue.h"
+#include "wellgyro/survey/intake/sample_queue.h"
 
 #include <algorithm>
 #include <cstdint>

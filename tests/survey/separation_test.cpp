@@ -1,4 +1,4 @@
-#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/wells/separation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "wellgyro/base/angle.h"
-#include "wellgyro/survey/well_uncertainty.h"
+#include "wellgyro/survey/hole/well_uncertainty.h"
 #include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {

@@ -1,4 +1,4 @@
-#include "wellgyro/survey/station_marks.h"
+#include "wellgyro/survey/intake/station_marks.h"
 
 #include <gtest/gtest.h>
 

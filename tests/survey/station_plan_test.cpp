@@ -1,4 +1,4 @@
-#include "wellgyro/survey/station_plan.h"
+#include "wellgyro/survey/stations/station_plan.h"
 
 #include <vector>
 

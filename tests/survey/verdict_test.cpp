@@ -1,4 +1,4 @@
-#include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/verdict/verdict.h"
 
 #include <cmath>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/math/random.h"
-#include "wellgyro/survey/tie_in_check.h"
+#include "wellgyro/survey/verdict/tie_in_check.h"
 
 namespace wellgyro {
 namespace {

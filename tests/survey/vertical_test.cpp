@@ -16,7 +16,7 @@
 #include "wellgyro/record/force_errors.h"
 #include "wellgyro/simulate/tool_errors.h"
 #include "wellgyro/simulate/truth.h"
-#include "wellgyro/survey/node_attitude.h"
+#include "wellgyro/survey/hole/node_attitude.h"
 
 #include "support/simulated_survey.h"
 

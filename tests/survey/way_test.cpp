@@ -1,5 +1,5 @@
 // Positions are those of the hole, whatever the spacing of the stations.
-#include "wellgyro/survey/way.h"
+#include "wellgyro/survey/stations/way.h"
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/simulate/truth.h"
-#include "wellgyro/survey/assemble.h"
+#include "wellgyro/survey/stations/assemble.h"
 
 #include "support/simulated_survey.h"
 #include "support/small_hole.h"

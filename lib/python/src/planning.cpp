@@ -20,7 +20,7 @@
 #include "wellgyro/io/result/taken_survey.h"
 #include "wellgyro/io/toml/model_catalogue.h"
 #include "wellgyro/io/words.h"
-#include "wellgyro/survey/compare.h"
+#include "wellgyro/survey/wells/compare.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 #include "binding.h"

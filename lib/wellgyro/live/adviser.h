@@ -11,7 +11,7 @@
 #include "wellgyro/estimate/run_state.h"
 #include "wellgyro/plan/live_advice.h"
 #include "wellgyro/record/advice.h"
-#include "wellgyro/survey/run_now.h"
+#include "wellgyro/survey/run/run_now.h"
 
 namespace wellgyro {
 

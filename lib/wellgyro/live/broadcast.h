@@ -19,7 +19,7 @@
 #include "wellgyro/record/glance.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/survey/station_key.h"
+#include "wellgyro/survey/stations/station_key.h"
 
 namespace wellgyro {
 

@@ -11,7 +11,7 @@
 #include "wellgyro/bus/encode.h"
 #include "wellgyro/io/signature.h"
 #include "wellgyro/io/words.h"
-#include "wellgyro/survey/plausible.h"
+#include "wellgyro/survey/intake/plausible.h"
 
 namespace wellgyro {
 namespace {

@@ -11,7 +11,7 @@
 #include "wellgyro/io/words.h"
 #include "wellgyro/live/observer.h"
 #include "wellgyro/live/session_core_internal.h"
-#include "wellgyro/survey/run_now.h"
+#include "wellgyro/survey/run/run_now.h"
 
 namespace wellgyro {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "wellgyro/page/html_internal.h"
 #include "wellgyro/page/page_internal.h"
-#include "wellgyro/survey/field_practice.h"
+#include "wellgyro/survey/hole/field_practice.h"
 
 namespace wellgyro {
 namespace {

@@ -11,7 +11,7 @@
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/way_behind.h"
 #include "wellgyro/plan/synthetic_run.h"
-#include "wellgyro/survey/run_diagnosis.h"
+#include "wellgyro/survey/verdict/run_diagnosis.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {

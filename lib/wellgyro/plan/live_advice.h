@@ -6,7 +6,7 @@
 #include "wellgyro/plan/run_so_far.h"
 #include "wellgyro/plan/stop_search.h"
 #include "wellgyro/record/advice.h"
-#include "wellgyro/survey/run_now.h"
+#include "wellgyro/survey/run/run_now.h"
 
 namespace wellgyro {
 

@@ -16,7 +16,7 @@
 #include "wellgyro/math/rotation.h"
 #include "wellgyro/math/sinc.h"
 #include "wellgyro/math/so3.h"
-#include "wellgyro/survey/run_diagnosis.h"
+#include "wellgyro/survey/verdict/run_diagnosis.h"
 
 namespace wellgyro {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "wellgyro/survey/choose.h"
+#include "wellgyro/survey/stations/choose.h"
 
 namespace wellgyro {
 

@@ -6,7 +6,7 @@
 #include "wellgyro/record/along_hole.h"
 #include "wellgyro/record/operations.h"
 #include "wellgyro/record/station.h"
-#include "wellgyro/survey/checks.h"
+#include "wellgyro/survey/verdict/checks.h"
 
 namespace wellgyro {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/survey/run_history.h"
+#include "wellgyro/survey/run/run_history.h"
 
 namespace wellgyro {
 

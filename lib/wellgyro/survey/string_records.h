@@ -2,8 +2,8 @@
 
 #include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/depth_track.h"
-#include "wellgyro/survey/checks.h"
-#include "wellgyro/survey/run_book.h"
+#include "wellgyro/survey/run/run_book.h"
+#include "wellgyro/survey/verdict/checks.h"
 
 namespace wellgyro {
 

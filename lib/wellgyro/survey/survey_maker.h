@@ -7,12 +7,12 @@
 
 #include "wellgyro/base/time.h"
 #include "wellgyro/survey/crew_events.h"
-#include "wellgyro/survey/draft.h"
+#include "wellgyro/survey/intake/sample_queue.h"
 #include "wellgyro/survey/job.h"
-#include "wellgyro/survey/sample_queue.h"
+#include "wellgyro/survey/stations/draft.h"
+#include "wellgyro/survey/stations/told_stations.h"
 #include "wellgyro/survey/string_records.h"
 #include "wellgyro/survey/survey.h"
-#include "wellgyro/survey/told_stations.h"
 #include "wellgyro/survey/tool_run.h"
 
 namespace wellgyro {

@@ -18,10 +18,10 @@
 #include "wellgyro/depth/cable.h"
 #include "wellgyro/depth/depth_track.h"
 #include "wellgyro/record/limits.h"
-#include "wellgyro/survey/mark_gate.h"
-#include "wellgyro/survey/plausible.h"
-#include "wellgyro/survey/run_book.h"
-#include "wellgyro/survey/run_now.h"
+#include "wellgyro/survey/intake/mark_gate.h"
+#include "wellgyro/survey/intake/plausible.h"
+#include "wellgyro/survey/run/run_book.h"
+#include "wellgyro/survey/run/run_now.h"
 #include "wellgyro/survey/tool_survey.h"
 
 namespace wellgyro {

@@ -7,9 +7,9 @@
 #include "wellgyro/attitude/station_state.h"
 #include "wellgyro/depth/depth_motion.h"
 #include "wellgyro/record/attitude_sample.h"
-#include "wellgyro/survey/provisional.h"
-#include "wellgyro/survey/run_survey.h"
-#include "wellgyro/survey/sample_watch.h"
+#include "wellgyro/survey/intake/sample_watch.h"
+#include "wellgyro/survey/run/provisional.h"
+#include "wellgyro/survey/run/run_survey.h"
 
 namespace wellgyro {
 

@@ -12,7 +12,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/record/limits.h"
 #include "wellgyro/record/run_fit.h"
-#include "wellgyro/survey/estimated_run.h"
+#include "wellgyro/survey/run/estimated_run.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 
 namespace wellgyro {

@@ -8,13 +8,13 @@
 
 #include "wellgyro/record/operations.h"
 #include "wellgyro/survey/crew_events.h"
+#include "wellgyro/survey/intake/sample_intake.h"
 #include "wellgyro/survey/operations_due.h"
 #include "wellgyro/survey/run_adjuster.h"
-#include "wellgyro/survey/sample_intake.h"
+#include "wellgyro/survey/stations/told_stations.h"
 #include "wellgyro/survey/string_records.h"
 #include "wellgyro/survey/survey_maker.h"
 #include "wellgyro/survey/surveyor.h"
-#include "wellgyro/survey/told_stations.h"
 #include "wellgyro/survey/tool_run.h"
 
 namespace wellgyro {

@@ -1,7 +1,7 @@
 // What people and tools ask of a survey, obeyed when its samples get there.
 #include <cmath>
 
-#include "wellgyro/survey/station_marks.h"
+#include "wellgyro/survey/intake/station_marks.h"
 #include "wellgyro/survey/tool_survey.h"
 #include "wellgyro/survey/tool_survey_internal.h"
 

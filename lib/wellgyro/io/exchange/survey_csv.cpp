@@ -17,7 +17,7 @@
 #include "wellgyro/io/text_file.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/io/words.h"
-#include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/verdict/verdict.h"
 
 namespace wellgyro {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/wells/separation.h"
 
 namespace wellgyro {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/survey/separation.h"
-#include "wellgyro/survey/well_uncertainty.h"
+#include "wellgyro/survey/hole/well_uncertainty.h"
+#include "wellgyro/survey/wells/separation.h"
 
 namespace wellgyro {
 

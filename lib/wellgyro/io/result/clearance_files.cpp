@@ -18,7 +18,7 @@
 #include "wellgyro/io/toml/named_file_internal.h"
 #include "wellgyro/io/toml/program_file.h"
 #include "wellgyro/io/toml/toml_internal.h"
-#include "wellgyro/survey/kick_off.h"
+#include "wellgyro/survey/hole/kick_off.h"
 
 namespace wellgyro {
 namespace {

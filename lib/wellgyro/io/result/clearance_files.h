@@ -9,7 +9,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/wells/separation.h"
 #include "wellgyro/uncertainty/propagate.h"
 
 namespace wellgyro {

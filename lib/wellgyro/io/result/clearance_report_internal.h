@@ -6,7 +6,7 @@
 
 #include "wellgyro/io/plot/clearance_plot.h"
 #include "wellgyro/io/toml/clearance_file.h"
-#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/wells/separation.h"
 
 namespace wellgyro {
 

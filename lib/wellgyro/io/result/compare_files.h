@@ -8,7 +8,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/survey/compare.h"
+#include "wellgyro/survey/wells/compare.h"
 #include "wellgyro/uncertainty/propagate.h"
 
 namespace wellgyro {

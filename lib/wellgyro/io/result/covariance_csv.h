@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "wellgyro/base/export.h"
-#include "wellgyro/survey/separation.h"
-#include "wellgyro/survey/well_uncertainty.h"
+#include "wellgyro/survey/hole/well_uncertainty.h"
+#include "wellgyro/survey/wells/separation.h"
 
 /// Position uncertainty as plain CSV: one header line, UTF-8, LF, a dot for decimals. Lengths to
 /// 1e-4, angles to 1e-6, covariances to 9 significant digits.

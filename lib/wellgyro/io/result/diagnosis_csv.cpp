@@ -10,7 +10,7 @@
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/text_internal.h"
 #include "wellgyro/record/run_fit.h"
-#include "wellgyro/survey/run_diagnosis.h"
+#include "wellgyro/survey/verdict/run_diagnosis.h"
 
 namespace wellgyro {
 namespace {

@@ -5,7 +5,7 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/survey/empirical_model.h"
+#include "wellgyro/survey/wells/empirical_model.h"
 
 namespace wellgyro {
 

@@ -11,7 +11,7 @@
 #include "wellgyro/io/exchange/exchange.h"
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/survey_table.h"
-#include "wellgyro/survey/merge.h"
+#include "wellgyro/survey/wells/merge.h"
 
 namespace wellgyro {
 

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "wellgyro/io/exchange/well_stations.h"
-#include "wellgyro/survey/well_uncertainty.h"
+#include "wellgyro/survey/hole/well_uncertainty.h"
 
 namespace wellgyro {
 

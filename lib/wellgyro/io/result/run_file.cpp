@@ -25,7 +25,7 @@
 #include "wellgyro/io/toml/toml_writer_internal.h"
 #include "wellgyro/io/words.h"
 #include "wellgyro/record/run_fit.h"
-#include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/verdict/verdict.h"
 
 namespace wellgyro {
 namespace {

@@ -12,7 +12,7 @@
 #include "wellgyro/io/number_text_internal.h"
 #include "wellgyro/io/result/unseen_faults_internal.h"
 #include "wellgyro/io/words.h"
-#include "wellgyro/survey/verdict.h"
+#include "wellgyro/survey/verdict/verdict.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {

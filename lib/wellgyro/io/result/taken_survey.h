@@ -12,8 +12,8 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/earth/grid.h"
 #include "wellgyro/io/text_file.h"
-#include "wellgyro/survey/compare.h"
-#include "wellgyro/survey/well_uncertainty.h"
+#include "wellgyro/survey/hole/well_uncertainty.h"
+#include "wellgyro/survey/wells/compare.h"
 
 namespace wellgyro {
 

@@ -10,8 +10,8 @@
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
 #include "wellgyro/io/atomic_file.h"
-#include "wellgyro/survey/separation.h"
-#include "wellgyro/survey/well_uncertainty.h"
+#include "wellgyro/survey/hole/well_uncertainty.h"
+#include "wellgyro/survey/wells/separation.h"
 #include "wellgyro/uncertainty/ellipse.h"
 
 namespace wellgyro {

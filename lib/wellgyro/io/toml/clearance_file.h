@@ -9,7 +9,7 @@
 
 #include "wellgyro/base/export.h"
 #include "wellgyro/base/result.h"
-#include "wellgyro/survey/separation.h"
+#include "wellgyro/survey/wells/separation.h"
 
 namespace wellgyro {
 

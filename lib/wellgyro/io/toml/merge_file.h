@@ -13,7 +13,7 @@
 #include "wellgyro/base/result.h"
 #include "wellgyro/earth/grid.h"
 #include "wellgyro/io/text_file.h"
-#include "wellgyro/survey/merge.h"
+#include "wellgyro/survey/wells/merge.h"
 
 namespace wellgyro {
 
