@@ -125,9 +125,10 @@ Simulation SlowStands() {
   return simulation;
 }
 
-/// By which a tie is off where the simulation has the tool's clock zero [s].
-double ErrorOf(const StopMatch& match, const Simulation& simulation) {
-  return (match.ToUtc(ToolTime{}) - simulation.streams.begin_utc).seconds();
+/// By which a tie is off [s]; the simulation's two clocks go alike.
+double ErrorAt(ToolTime time, const StopMatch& match, const Simulation& simulation) {
+  const Duration truth = time - ToolTime{};
+  return (match.ToUtc(time) - simulation.streams.begin_utc - truth).seconds();
 }
 
 // A string that takes ten seconds to come to its speed is within two centimetres of its rest for
@@ -141,8 +142,9 @@ TEST(ClockJoin, RestsTellTheOffsetWithinTheStepsOfTheirEnds) {
     const auto samples = scratch.path() / "tool.csv", depth = scratch.path() / "depth.csv";
     const auto joined = sensors::JoinByStops({samples, depth}, StandsJob());
     ASSERT_TRUE(joined) << joined.fault().text;
-    const double sigma = joined->match.Sigma(ToolTime{});
-    EXPECT_LT(std::abs(ErrorOf(joined->match, simulation)), 3 * sigma);
+    const StopMatch& match = joined->match;
+    const double sigma = match.Sigma(match.tool);
+    EXPECT_LT(std::abs(ErrorAt(match.tool, match, simulation)), 3 * sigma);
     EXPECT_GT(sigma, 0.2) << "blocks of a second, marks twice a second";
     EXPECT_LT(sigma, 0.3);
   }
@@ -157,8 +159,10 @@ TEST(SensorFiles, ClocksAreJoinedByTheMotionThatIsFelt) {
     const SurveyedTables done = Do(scratch, {"tool.csv", "depth.csv"}, StandsJob());
     ASSERT_TRUE(done.report) << done.report.fault().text;
     ASSERT_TRUE(done.report->clock);
-    const double sigma = done.report->clock->Sigma(done.report->clock->tool);
-    EXPECT_LT(std::abs(ErrorOf(*done.report->clock, simulation)), 3 * sigma);
+    const StopMatch& match = *done.report->clock;
+    const double sigma = match.Sigma(match.tool);
+    EXPECT_LT(std::abs(ErrorAt(match.tool, match, simulation)), 3 * sigma);
+    EXPECT_LT(std::abs(ErrorAt(ToolTime{}, match, simulation)), 3 * match.Sigma(ToolTime{}));
     EXPECT_LT(sigma, 0.02);
     const auto lag = std::ranges::find(done.survey.checks, "depth_lag", &Check::code);
     ASSERT_NE(lag, done.survey.checks.end());
