@@ -28,7 +28,8 @@ constexpr int kSolveIterations = 40;  // at most, before the scales of the roll 
 // A sum of squares this many sigmas above its freedom is not chance, P(x > 4) = 3.2e-5: one run in
 // 30 000.
 constexpr double kTooLarge = 4;
-// Two that are within a sigma of one minimum: their evidence is within half its square of it.
+// Solvers that stand within a sigma of one minimum, over all unknowns together, have an evidence,
+// -2 ln of a density, within 1 of its.
 constexpr double kSameEvidence = 1;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.

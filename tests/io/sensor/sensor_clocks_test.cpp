@@ -169,6 +169,12 @@ TEST(SensorFiles, ClocksAreJoinedByTheMotionThatIsFelt) {
     ASSERT_TRUE(lag->value && lag->sigma);
     EXPECT_GE(*lag->sigma, sigma) << "the tie's error is a lag of the marks";
     EXPECT_EQ(lag->verdict, Verdict::kPass);
+    // With both clocks in the samples there is no tie by stops to be unsure of.
+    scratch.Write("both.csv", TablesOf(simulation, true).samples);
+    const SurveyedTables both = Do(scratch, {"both.csv", "depth.csv"}, StandsJob());
+    const auto sharp = std::ranges::find(both.survey.checks, "depth_lag", &Check::code);
+    ASSERT_NE(sharp, both.survey.checks.end());
+    EXPECT_LT(sharp->sigma.value_or(1), 0.5 * sigma);
   }
 }
 

@@ -37,7 +37,8 @@ constexpr int kLagRounds = 2;
 
 /// The times in which depth stays within kRestsWithin, each as long as it can be. Of a string that
 /// slows down and speeds up alike its ends are then as far off on either side; a rest that begins
-/// at the first mark with which the next agree begins early and ends in time.
+/// at the first mark with which the next agree begins early and ends in time. Marks as SensorCsv
+/// reads them: each later than the one before.
 class RigRests {
  public:
   void Take(const DepthMark& mark) {

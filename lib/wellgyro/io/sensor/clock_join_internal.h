@@ -24,9 +24,9 @@ struct JoinedClocks {
 /// Ties the clocks by the rests of tool and depth, see MatchStops().
 ///
 /// A rest's edges are noted in steps, the tool's of a second, the depth's from mark to mark. Where
-/// stops last whole steps, which no scatter tells, all of them err alike: begin and end by up to a
-/// step, the offset by s^2 / 24 of the variance of either clock, which its covariance has.
-/// Faults: those of MatchStops(), and a row that cannot be read.
+/// stops last whole steps s, which no scatter tells, all of them err alike: begin and end by up to
+/// a step each, so that the offset's variance has s^2 / 24 of either clock. Faults: those of
+/// MatchStops(), and a row that cannot be read.
 Result<JoinedClocks> JoinByStops(const ClockTables& tables, const Job& job);
 
 /// Moves the tie by the lag of depth that starts and stops show to the accelerometers, see
