@@ -19,6 +19,12 @@ RESULT = ("survey.csv", "passes.csv", "checks.csv", "diagnosis.csv", "reliabilit
           "stretches.csv", "run.toml")
 
 
+def Limit(idle, shared):
+    """What a time or a load may reach: the first on an idle machine (WELLGYRO_TIMED=1), the second on
+    one that has other work, where it only tells a wait or a loop without an end."""
+    return idle if os.environ.get("WELLGYRO_TIMED") else shared
+
+
 def Stop(seconds):
     return f"[[run.step]]\nstop_s = {seconds:.1f}\n"
 

@@ -17,7 +17,7 @@ import urllib.parse
 
 import browser
 import live_test
-from harness import Move, Run, Simulation, Stop
+from harness import Limit, Move, Run, Simulation, Stop
 from live_test import Ear, InOwnNetwork, Live
 
 SIMULATION = Simulation(Stop(90) + Move(200) + Stop(90) + Move(20) + Stop(30),
@@ -180,7 +180,7 @@ class LivePage(Live):
         self.assertGreater(len(told), 20)
         waited = max(page - bus for page, bus in zip(told, sent, strict=False))
         print(f"{len(told)} stations, in the page {waited:.2f} s after their messages at most")
-        self.assertLessEqual(waited, 1)
+        self.assertLessEqual(waited, Limit(1, 5))
 
     @unittest.skipUnless(browser.PROGRAM, "no Chromium on this machine")
     def test_killed_it_says_so_and_resumed_it_goes_on(self):
@@ -190,18 +190,18 @@ class LivePage(Live):
         simulation = self.Simulate(30)
         page.Until("document.querySelectorAll('#stations tr').length > 5", 30)
         survey.kill()
-        waited = page.Until(f"{LINK}.startsWith('No link')", 10)
+        waited = page.Until(f"{LINK}.startsWith('No link')", 20)
         print(f"killed: said after {waited:.1f} s")
-        self.assertLessEqual(waited, 5)
+        self.assertLessEqual(waited, Limit(5, 15))
         self.assertIn("verdict fail", page.Ask("document.getElementById('link').className"))
         survey.wait()
         survey = self.Again("killed", *record, "--resume")
         waited = page.Until(f"{LINK}.startsWith('Running')", 10)
         print(f"resumed: running after {waited:.1f} s")
         survey.send_signal(signal.SIGSTOP)
-        waited = page.Until(f"{LINK}.startsWith('No link')", 10)
+        waited = page.Until(f"{LINK}.startsWith('No link')", 20)
         print(f"stands still: said after {waited:.1f} s")
-        self.assertLessEqual(waited, 5)
+        self.assertLessEqual(waited, Limit(5, 15))
         survey.send_signal(signal.SIGCONT)
         page.Until(f"{LINK}.startsWith('Running')", 10)
         simulation.wait()
@@ -217,9 +217,9 @@ class LivePage(Live):
         simulation = self.Simulate(60)
         page.Until(f"{LINK} === 'Running.'", 10)
         simulation.kill()
-        waited = page.Until(f"{LINK}.startsWith('No samples')", 10)
+        waited = page.Until(f"{LINK}.startsWith('No samples')", 20)
         print(f"tool silent: said after {waited:.1f} s")
-        self.assertLessEqual(waited, 5)
+        self.assertLessEqual(waited, Limit(5, 15))
 
     def test_a_hundred_pages_change_no_byte_and_cost_next_to_nothing(self):
         used = {}
@@ -239,7 +239,7 @@ class LivePage(Live):
         self.SameAs("straight", "crowd")
         print(f"load alone {100 * used['alone']:.2f} %, with 100 pages {100 * used['crowd']:.2f} %")
         # At speed 1: tests/bench/live_page.py.
-        self.assertLess(used["crowd"] - used["alone"], 0.05)
+        self.assertLess(used["crowd"] - used["alone"], Limit(0.05, 0.5))
 
     def test_more_readers_than_there_is_room_for(self):
         survey = self.Survey("full")

@@ -15,7 +15,7 @@ import sys
 import unittest
 
 import browser
-from harness import DEMO, Job, Move, ProgramTest, Run, Simulation, Stop
+from harness import DEMO, Job, Limit, Move, ProgramTest, Run, Simulation, Stop
 
 REDRAW = "--redraw" in sys.argv
 if REDRAW:
@@ -255,7 +255,7 @@ at_rest_s = 1000
         took = page.Ask("performance.timing.loadEventEnd - performance.timing.navigationStart")
         print(f"1000 stations: {size / 1e6:.2f} MB, drawn in {took / 1e3:.2f} s")
         self.assertLess(size, 5e6)
-        self.assertLess(took, 2000 if os.environ.get("WELLGYRO_TIMED") else 20000)
+        self.assertLess(took, Limit(2000, 20000))
 
     def test_can_be_read_without_scripts(self):
         page = self.Page("demo", scripts=False)
