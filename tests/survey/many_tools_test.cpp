@@ -160,7 +160,7 @@ TEST(ManyTools, MoreThanAreAllowedAreFaultsAndNoMemory) {
 
 TEST(ManyTools, OneTooManyLeavesTheOthersOfItsBatch) {
   // Each of kToolsMax tools has been heard for long: none of them gives way.
-  constexpr std::int32_t kLong = 1000, kMost = Surveyor::kToolsMax;
+  constexpr std::int32_t kLong = 1000, kTools = Surveyor::kToolsMax;
   CollectingSink sink;
   Surveyor surveyor(SlantJob(), sink);
   const auto sample_of = [](std::int32_t tool, std::int64_t number) {
@@ -174,14 +174,14 @@ TEST(ManyTools, OneTooManyLeavesTheOthersOfItsBatch) {
     return sample;
   };
   std::vector<ImuSample> batch;
-  for (std::int32_t tool = 0; tool < kMost; ++tool) {
+  for (std::int32_t tool = 0; tool < kTools; ++tool) {
     batch.clear();
     for (std::int64_t i = 0; i < kLong; ++i) batch.push_back(sample_of(tool, i));
     surveyor.Push(std::span<const ImuSample>(batch));
   }
   ASSERT_TRUE(sink.faults.empty());
   const std::int64_t before = surveyor.tally().received;
-  batch = {sample_of(0, kLong), sample_of(kMost, 0), sample_of(1, kLong), sample_of(kMost, 1),
+  batch = {sample_of(0, kLong), sample_of(kTools, 0), sample_of(1, kLong), sample_of(kTools, 1),
            sample_of(2, kLong)};
   surveyor.Push(std::span<const ImuSample>(batch));
   EXPECT_EQ(surveyor.tally().received, before + 3);

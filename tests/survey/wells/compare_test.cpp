@@ -9,7 +9,7 @@
 #include "wellgyro/base/units.h"
 #include "wellgyro/math/random.h"
 
-#include "survey/compared_surveys.h"
+#include "survey/wells/compared_surveys.h"
 
 namespace wellgyro {
 namespace {

@@ -14,7 +14,7 @@
 #include "wellgyro/math/statistics.h"
 #include "wellgyro/survey/wells/compare.h"
 
-#include "survey/compared_surveys.h"
+#include "survey/wells/compared_surveys.h"
 
 namespace wellgyro {
 namespace {
