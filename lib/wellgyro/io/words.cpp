@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "wellgyro/survey/job_words.h"
 #include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {
@@ -18,11 +19,6 @@ constexpr std::array<std::string_view, 5> kStatuses{"provisional", "field", "def
                                                     "rejected", "superseded"};
 constexpr std::array<std::string_view, 4> kPasses{"stationary", "in", "out", "repeat"};
 constexpr std::array<std::string_view, 4> kVerdicts{"pass", "warn", "fail", "not_done"};
-constexpr std::array<std::string_view, 5> kDepths{"indicated", "wireline", "drill_pipe", "tubing",
-                                                  "other"};
-constexpr std::array<std::string_view, 11> kEvents{
-    "",          "depth_zero", "depth_rezero", "depth_tie", "return_to_zero", "foresight",
-    "run_begin", "run_end",    "accept",       "reject",    "remark"};
 constexpr std::array<std::string_view, 12> kFlags{
     "moved",       "mirror",  "vertical", "saturated",  "gap",   "depth",
     "temperature", "aliased", "gravity",  "earth_rate", "clock", "unfit"};
@@ -53,8 +49,8 @@ std::string_view WordOf(StationKind kind) { return WordAt(kKinds, kind); }
 std::string_view WordOf(StationStatus status) { return WordAt(kStatuses, status); }
 std::string_view WordOf(Pass pass) { return WordAt(kPasses, pass); }
 std::string_view WordOf(Verdict verdict) { return WordAt(kVerdicts, verdict); }
-std::string_view WordOf(Event::Kind kind) { return WordAt(kEvents, kind); }
-std::string_view WordOf(DepthKind kind) { return WordAt(kDepths, kind); }
+std::string_view WordOf(Event::Kind kind) { return WordAt(words::kEvent, kind); }
+std::string_view WordOf(DepthKind kind) { return WordAt(words::kDepthKind, kind); }
 std::string_view WordOf(FaultCode code) { return WordAt(kFaults, code); }
 std::string_view WordOf(Propagation reach) { return WordAt(kPropagations, reach); }
 
@@ -62,10 +58,10 @@ std::optional<StationKind> StationKindOf(std::string_view word) {
   return Find<StationKind>(kKinds, word);
 }
 std::optional<Event::Kind> EventKindOf(std::string_view word) {
-  return Find<Event::Kind>(kEvents, word);
+  return Find<Event::Kind>(words::kEvent, word);
 }
 std::optional<DepthKind> DepthKindOf(std::string_view word) {
-  return Find<DepthKind>(kDepths, word);
+  return Find<DepthKind>(words::kDepthKind, word);
 }
 
 std::string QualityText(Quality quality) {

@@ -10,6 +10,7 @@
 
 #include "wellgyro/base/units.h"
 #include "wellgyro/record/limits.h"
+#include "wellgyro/survey/job_words.h"
 
 namespace wellgyro {
 namespace {
@@ -78,6 +79,14 @@ constexpr JobKey Word(std::string_view table, std::string_view key, std::string_
   return {table, key, type, absent, meaning};
 }
 
+constexpr JobKey Choice(std::string_view table, std::string_view key,
+                        std::span<const std::string_view> words, std::string_view absent,
+                        std::string_view meaning) {
+  JobKey found = Word(table, key, "", absent, meaning);
+  found.words = words;
+  return found;
+}
+
 // Of a gyro, in the units of data sheets: 1e6 deg/h are most of a turn in a second.
 constexpr NumberRange kError{.min = 0, .max = 1e6};
 // Of a size above zero, in its key's unit: in SI units a double holds it too.
@@ -128,9 +137,7 @@ constexpr std::array kWell{
 
 constexpr std::array kGrid{
     Word("grid", "utm_zone", "text", "none", "as 31N; instead of all keys of a projection"),
-    Word("grid", "projection",
-         "transverse_mercator, lambert_conformal_conic or polar_stereographic", "required",
-         "where there is no utm_zone"),
+    Choice("grid", "projection", words::kProjection, "required", "where there is no utm_zone"),
     Word("grid", "name", "text", "none", "of the system, for the files"),
     Word("grid", "epsg", "text", "none", "of the system; a label, never looked up"),
     Number<&Job::grid, &GridSpec::semi_major>("grid", "semi_major_m", 1, {.min = 1e6, .max = 1e8},
@@ -149,7 +156,7 @@ constexpr std::array kGrid{
     Number<&Job::grid, &GridSpec::parallel_2>("grid", "parallel_2_deg", kDeg,
                                               {.min = -90, .max = 90}, "its second parallel",
                                               "parallel_1_deg"),
-    Word("grid", "pole", "north or south", "required", "of a polar stereographic projection"),
+    Choice("grid", "pole", words::kPole, "required", "of a polar stereographic projection"),
     Number<&Job::grid, &GridSpec::scale_origin>(
         "grid", "scale_origin", 1, {.min = 0.5, .max = 2},
         "scale on the central meridian, the parallel or at the pole", "1"),
@@ -189,11 +196,9 @@ constexpr std::array kNoise{
     Number<&Job::noise, &NoiseCoefficients::quantization>("noise", "quantization_arcsec",
                                                           units::kArcsec, kError, "Q of IEEE 952"),
     Number<&Job::noise, &NoiseCoefficients::angle_random_walk>(
-        "noise", "angle_random_walk_deg_per_sqrt_h", units::kDegPerSqrtHour, kError, "N",
-        "0; without any [noise] 0.0224"),
+        "noise", "angle_random_walk_deg_per_sqrt_h", units::kDegPerSqrtHour, kError, "N"),
     Number<&Job::noise, &NoiseCoefficients::bias_instability>("noise", "bias_instability_deg_per_h",
-                                                              units::kDegPerHour, kError, "B",
-                                                              "0; without any [noise] 0.1"),
+                                                              units::kDegPerHour, kError, "B"),
     Number<&Job::noise, &NoiseCoefficients::rate_random_walk>(
         "noise", "rate_random_walk_deg_per_h_sqrt_h", units::kDegPerHourSqrtHour, kError, "K"),
     Number<&Job::noise, &NoiseCoefficients::rate_ramp>("noise", "rate_ramp_deg_per_h2",
@@ -203,51 +208,39 @@ constexpr std::array kNoise{
         "of B as a Gauss-Markov process", "B is a constant"),
 };
 
-// Without a key what the tool's file says of it holds, else what io/toml/coefficients_internal.h
-// has from published tools.
+// Without a key what the tool's file says of it holds, else survey/unstated_errors.h.
 constexpr std::array kErrors{
     Number<&Job::errors, &ErrorPriors::gyro_bias_sigma>("errors", "gyro_bias_sigma_deg_per_h",
-                                                        units::kDegPerHour, kError, "per axis",
-                                                        "the tool's, else 0.1"),
+                                                        units::kDegPerHour, kError, "per axis"),
     Number<&Job::errors, &ErrorPriors::mass_unbalance_sigma>(
         "errors", "mass_unbalance_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kError,
-        "drift with the force along the gyro's own axis", "the tool's, else 0.5"),
+        "drift with the force along the gyro's own axis"),
     Number<&Job::errors, &ErrorPriors::quadrature_sigma>(
         "errors", "quadrature_sigma_deg_per_h_per_g", units::kDegPerHourPerG, kError,
-        "drift with the force along the other axis", "the tool's, else mass unbalance, else 0.5"),
+        "drift with the force along the other axis"),
     Number<&Job::errors, &ErrorPriors::gyro_scale_sigma>("errors", "gyro_scale_sigma", 1, kFraction,
-                                                         "per axis, of the rate",
-                                                         "the tool's, else 0.001"),
+                                                         "per axis, of the rate"),
     Number<&Job::errors, &ErrorPriors::gyro_misalignment_sigma>(
-        "errors", "gyro_misalignment_sigma_rad", 1, kFraction, "z into x and y",
-        "the tool's, else 0.05 deg"),
+        "errors", "gyro_misalignment_sigma_rad", 1, kFraction, "z into x and y"),
     Number<&Job::errors, &ErrorPriors::accel_bias_sigma>("errors", "accel_bias_sigma_mps2", 1,
-                                                         {.min = 0, .max = 10}, "per axis",
-                                                         "the tool's, else 0.005"),
-    Number<&Job::errors, &ErrorPriors::accel_scale_sigma>(
-        "errors", "accel_scale_sigma", 1, kFraction, "per axis",
-        "the tool's, else accelerometer bias over 1 g, else 5e-4"),
+                                                         {.min = 0, .max = 10}, "per axis"),
+    Number<&Job::errors, &ErrorPriors::accel_scale_sigma>("errors", "accel_scale_sigma", 1,
+                                                          kFraction, "per axis"),
     Number<&Job::errors, &ErrorPriors::accel_misalignment_sigma>(
-        "errors", "accel_misalignment_sigma_rad", 1, kFraction, "of each axis towards each other",
-        "the tool's, else gyro misalignment, else 0.05 deg"),
+        "errors", "accel_misalignment_sigma_rad", 1, kFraction, "of each axis towards each other"),
     Number<&Job::errors, &ErrorPriors::accel_noise>("errors", "accel_noise_mps2_per_sqrt_hz", 1,
-                                                    {.min = 0, .max = 10}, "white",
-                                                    "the tool's, else 2e-4"),
-    Number<&Job::errors, &ErrorPriors::roll_offset_sigma>(
-        "errors", "roll_offset_sigma_deg", kDeg, {.min = 0, .max = 180},
-        "accelerometers against gyros about z", "the tool's, else gyro misalignment, else 0.05"),
+                                                    {.min = 0, .max = 10}, "white"),
+    Number<&Job::errors, &ErrorPriors::roll_offset_sigma>("errors", "roll_offset_sigma_deg", kDeg,
+                                                          {.min = 0, .max = 180},
+                                                          "accelerometers against gyros about z"),
     Number<&Job::errors, &ErrorPriors::time_skew_sigma>(
-        "errors", "time_skew_sigma_s", 1, {.min = 0, .max = 10}, "accelerometers against gyros",
-        "the tool's, else 0.001"),
+        "errors", "time_skew_sigma_s", 1, {.min = 0, .max = 10}, "accelerometers against gyros"),
     Number<&Job::errors, &ErrorPriors::depth_sigma>("errors", "depth_sigma_m", 1,
-                                                    {.min = 0, .max = 1000}, "of measured depth",
-                                                    "the tool's, else 0.35"),
+                                                    {.min = 0, .max = 1000}, "of measured depth"),
     Number<&Job::errors, &ErrorPriors::depth_scale_sigma>(
-        "errors", "depth_scale_sigma", 1, kFraction, "of measured depth below the tie-in",
-        "the tool's, else 5.6e-4"),
+        "errors", "depth_scale_sigma", 1, kFraction, "of measured depth below the tie-in"),
     Number<&Job::errors, &ErrorPriors::latitude_sigma>(
-        "errors", "latitude_sigma_deg", kDeg, {.min = 0, .max = 90}, "of the well's latitude",
-        "the tool's, else 0"),
+        "errors", "latitude_sigma_deg", kDeg, {.min = 0, .max = 90}, "of the well's latitude"),
 };
 
 constexpr std::array kFilesAndChannels{
@@ -267,7 +260,7 @@ constexpr std::array kFilesAndChannels{
 };
 
 constexpr std::array kAlignment{
-    Word("alignment", "method", "gyrocompass or external", "gyrocompass", "where north comes from"),
+    Choice("alignment", "method", words::kAlignment, "gyrocompass", "where north comes from"),
     Number<&Job::alignment, &AlignmentSpec::min_still>("alignment", "min_still_s", 1,
                                                        {.min = 3, .max = 86'400},
                                                        "shortest stop that is gyrocompassed"),
@@ -275,7 +268,7 @@ constexpr std::array kAlignment{
                                       "an external azimuth"),
     External<&AlignmentSpec::sigma_azimuth>("sigma_azimuth_deg", {.min = 1e-6, .max = 180},
                                             "its sigma"),
-    Word("alignment", "of", "axis or mark", "axis", "what the external azimuth belongs to"),
+    Choice("alignment", "of", words::kAzimuthOf, "axis", "what the external azimuth belongs to"),
     Number<&Job::alignment, &AlignmentSpec::at_md>("alignment", "at_md_m", 1, kDepth,
                                                    "depth at which it holds",
                                                    "the begin of the first sample"),
@@ -286,14 +279,13 @@ constexpr std::array kAlignment{
 };
 
 constexpr std::array kStations{
-    Word("attitude", "order", "second or third", "third", "in which samples are summed"),
+    Choice("attitude", "order", words::kOrder, "third", "in which samples are summed"),
     Number<&Job::stations, &StationSpec::every>("stations", "every_m", 1,
                                                 {.min = 0.2, .max = limits::kMd, .or_zero = true},
                                                 "spacing; 0: none", "10; 0 beside at_m"),
     Listed("stations", "at_m", "list of numbers that increase", kDepth, "none", "depths asked for"),
     Word("stations", "at_stops", "true or false", "false", "the gyrocompass stations too"),
-    Word("depth", "kind", "indicated, wireline, drill_pipe, tubing or other", "indicated",
-         "what the depth marks measure"),
+    Choice("depth", "kind", words::kDepthKind, "indicated", "what the depth marks measure"),
     Number<&Job::depth, &DepthSpec::latency>("depth", "latency_s", 1, {.min = 0, .max = 600},
                                              "how late a mark may come, against the samples"),
     Number<&Job::depth, &DepthSpec::max_gap>(
@@ -385,13 +377,10 @@ constexpr std::array kRunsAndEvents{
            "of the run"),
     Listed("run", "begin_utime_us", "whole number", kUtimeUs, "none", "UTC since 1970"),
     Listed("run", "end_utime_us", "whole number", kUtimeUs, "none", "what comes later is left out"),
-    Word("run", "verdict", "ok or misrun", "ok", "a misrun gives no stations"),
+    Choice("run", "verdict", words::kRunVerdict, "ok", "a misrun gives no stations"),
     Word("run", "remark", "text", "none", "for the files"),
     Listed("event", "utime_us", "whole number", kUtimeUs, "required", "UTC since 1970"),
-    Word("event", "event",
-         "depth_zero, depth_rezero, depth_tie, return_to_zero, foresight, run_begin, run_end, "
-         "accept, reject or remark",
-         "required", "what was done"),
+    Choice("event", "event", words::kEvent, "required", "what was done"),
     Listed("event", "seq", "whole number", kSeq, "0", "of the message"),
     Listed("event", "session", "whole number", kWhole, "0", "of the message"),
     Listed("event", "run", "whole number", kWhole, "0", "of the tool"),
@@ -437,21 +426,6 @@ std::optional<std::string> ComplaintOfSi(double si, const JobKey& key) {
   return ComplaintOf(value, key.range);
 }
 
-// What follows the type in the reference: ", 0 to 90".
-std::string LimitText(const JobKey& key) {
-  const std::string range = TextOf(key.range), second = TextOf(key.second);
-  if (range == "any") return "";
-  return ", " + range + (key.type.starts_with("text") ? " bytes" : "") +
-         (second == "any" ? "" : " and " + second);
-}
-
-std::string AbsentText(const JobKey& key) {
-  if (!key.absent.empty()) return std::string(key.absent);
-  const Job job;
-  const double* const value = key.find ? key.find(job) : nullptr;
-  return value ? fmt::format("{:.12g}", *value / key.unit) : "none";
-}
-
 }  // namespace
 
 std::span<const JobKey> JobKeys() { return kKeys; }
@@ -472,22 +446,6 @@ std::optional<std::string> FindNumberComplaint(const Job& job) {
     }
   }
   return std::nullopt;
-}
-
-std::string JobReference() {
-  std::string text;
-  std::string_view table;
-  for (const JobKey& key : kKeys) {
-    if (key.table != table) {
-      table = key.table;
-      const bool list = table == "run" || table == "event" || table == "operator";
-      text += fmt::format("\n## {}{}{}\n\n| key | is | without it | meaning |\n|---|---|---|---|\n",
-                          list ? "[[" : "[", table, list ? "]]" : "]");
-    }
-    text += fmt::format("| `{}` | {}{} | {} | {} |\n", key.key, key.type, LimitText(key),
-                        AbsentText(key), key.meaning);
-  }
-  return text;
 }
 
 }  // namespace wellgyro

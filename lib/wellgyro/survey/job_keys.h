@@ -17,8 +17,9 @@ namespace wellgyro {
 struct JobKey {
   std::string_view table;  ///< "depth.cable"; of lists of tables "run", "event"
   std::string_view key;    ///< with its unit: "weight_n_per_m"
-  std::string_view type;  ///< "number", "whole number", "text", "true or false", "gyrocompass, ..."
-  std::string_view absent;   ///< what holds without it; empty: the number of a Job{}
+  std::string_view type;   ///< "number", "whole number", "text", "true or false"; empty: a choice
+  /// What holds without it; empty: the number of a Job{}, of [errors] and [noise] what is unstated.
+  std::string_view absent;
   std::string_view meaning;  ///< one sentence or less
   /// Of a number, or of each in a list, in the key's unit; of a text's length [bytes].
   NumberRange range = {};
@@ -28,6 +29,7 @@ struct JobKey {
   double* (*make)(Job&) = nullptr;           ///< the same, made first where it is absent
   NumberRange second = {};                   ///< of the second number of each row of a list of two
   std::string Channels::*channel = nullptr;  ///< the name that it gives, of [channels]
+  std::span<const std::string_view> words = {};  ///< of a choice, see job_words.h
 };
 
 /// In the order of the reference.

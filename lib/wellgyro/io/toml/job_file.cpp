@@ -15,6 +15,7 @@
 #include "wellgyro/io/toml/toml_internal.h"
 #include "wellgyro/io/toml/tool_file.h"
 #include "wellgyro/survey/job_rules.h"
+#include "wellgyro/survey/unstated_errors.h"
 #include "wellgyro/uncertainty/error_model.h"
 
 namespace wellgyro {

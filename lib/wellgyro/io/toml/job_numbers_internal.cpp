@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "wellgyro/survey/job_keys.h"
-
 namespace wellgyro {
 namespace {
 

@@ -13,7 +13,6 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/signature.h"
 #include "wellgyro/io/toml/job_numbers_internal.h"
-#include "wellgyro/io/words.h"
 #include "wellgyro/survey/job_keys.h"
 #include "wellgyro/survey/job_rules.h"
 
@@ -56,26 +55,16 @@ std::optional<Eigen::Matrix3d> FindCovariance(TomlTable& table, std::string_view
   return cov;
 }
 
-GridSpec::Projection ReadProjection(TomlTable& table) {
-  using Projection = GridSpec::Projection;
-  return table.Need(
-      "projection",
-      table.FindWord<Projection>("projection",
-                                 {{"transverse_mercator", Projection::kTransverseMercator},
-                                  {"lambert_conformal_conic", Projection::kLambertConformalConic},
-                                  {"polar_stereographic", Projection::kPolarStereographic}}));
-}
-
 void ReadExplicitGrid(TomlTable& table, Job& job) {
   GridSpec& grid = *job.grid;
-  grid.projection = ReadProjection(table);
+  grid.projection =
+      table.Need("projection", FindChoice<GridSpec::Projection>(table, "grid", "projection"));
   for (const char* key : {"semi_major_m", "inverse_flattening", "longitude_origin_deg",
                           "scale_origin", "false_easting_m", "false_northing_m"}) {
     ReadNumber(table, "grid", key, job);
   }
   if (grid.projection == GridSpec::Projection::kPolarStereographic) {
-    grid.north_pole =
-        table.Need("pole", table.FindWord<bool>("pole", {{"north", true}, {"south", false}}));
+    grid.north_pole = table.Need("pole", FindChoice<bool>(table, "grid", "pole"));
     return;
   }
   ReadNumber(table, "grid", "latitude_origin_deg", job);
@@ -87,9 +76,8 @@ void ReadExplicitGrid(TomlTable& table, Job& job) {
 }
 
 void ReadExternalAzimuth(TomlTable& table, Job& job) {
-  using Of = AlignmentSpec::Of;
   AlignmentSpec& spec = job.alignment;
-  spec.of = table.FindWord<Of>("of", {{"axis", Of::kAxis}, {"mark", Of::kMark}}).value_or(spec.of);
+  spec.of = FindChoice<AlignmentSpec::Of>(table, "alignment", "of").value_or(spec.of);
   NeedNumber(table, "alignment", "azimuth_true_deg", job);
   spec.azimuth = WrapTwoPi(spec.azimuth);
   NeedNumber(table, "alignment", "sigma_azimuth_deg", job);
@@ -150,20 +138,14 @@ Channels ReadChannels(TomlTable table) {
 void ReadAlignment(TomlTable table, Job& job) {
   using Method = AlignmentSpec::Method;
   AlignmentSpec& spec = job.alignment;
-  spec.method = table
-                    .FindWord<Method>("method", {{"gyrocompass", Method::kGyrocompass},
-                                                 {"external", Method::kExternal}})
-                    .value_or(spec.method);
+  spec.method = FindChoice<Method>(table, "alignment", "method").value_or(spec.method);
   if (spec.method == Method::kExternal) ReadExternalAzimuth(table, job);
   ReadNumber(table, "alignment", "min_still_s", job);
 }
 
 AttitudeSpec ReadAttitude(TomlTable table) {
-  using Order = AttitudeSpec::Order;
   AttitudeSpec spec;
-  spec.order =
-      table.FindWord<Order>("order", {{"second", Order::kSecond}, {"third", Order::kThird}})
-          .value_or(spec.order);
+  spec.order = FindChoice<AttitudeSpec::Order>(table, "attitude", "order").value_or(spec.order);
   return spec;
 }
 
@@ -180,15 +162,7 @@ void ReadStations(TomlTable table, Job& job) {
 
 void ReadDepth(TomlTable table, Job& job) {
   DepthSpec& spec = job.depth;
-  if (const auto kind = table.FindString("kind")) {
-    const std::optional<DepthKind> known = DepthKindOf(*kind);
-    if (!known) {
-      table.Refuse(
-          "kind",
-          fmt::format("\"{}\" is none of indicated, wireline, drill_pipe, tubing, other", *kind));
-    }
-    spec.kind = *known;
-  }
+  spec.kind = FindChoice<DepthKind>(table, "depth", "kind").value_or(spec.kind);
   ReadNumbers(table, "depth", job);
   if (auto cable = table.FindTable("cable")) ReadNumbers(*cable, "depth.cable", job);
   if (const auto rows = table.FindRows("corrections", 2)) {
@@ -227,7 +201,7 @@ void ReadRun(TomlTable table, std::vector<RunSpec>& runs) {
   ReadSmall(table, "run", "number", run.number);
   run.begin = FindUtime(table, "run", "begin_utime_us");
   run.end = FindUtime(table, "run", "end_utime_us");
-  run.misrun = table.FindWord<bool>("verdict", {{"ok", false}, {"misrun", true}}).value_or(false);
+  run.misrun = FindChoice<bool>(table, "run", "verdict").value_or(false);
   table.Read("remark", run.remark);
   RefuseWrong(table, FindKeyComplaint(runs));
 }
@@ -239,16 +213,7 @@ Event ReadEvent(TomlTable table) {
   ReadSmall(table, "event", "session", event.session);
   ReadSmall(table, "event", "run", event.run);
   ReadSmall(table, "event", "event_id", event.event_id);
-  const std::string word = table.Need("event", table.FindString("event"));
-  const std::optional<Event::Kind> kind = EventKindOf(word);
-  if (!kind) {
-    table.Refuse(
-        "event",
-        fmt::format("\"{}\" is none of depth_zero, depth_rezero, depth_tie, "
-                    "return_to_zero, foresight, run_begin, run_end, accept, reject, remark",
-                    word));
-  }
-  event.kind = *kind;
+  event.kind = table.Need("event", FindChoice<Event::Kind>(table, "event", "event"));
   event.value_m = FindListed(table, "event", "value_m").value_or(event.value_m);
   event.sigma_m = FindListed(table, "event", "sigma_m").value_or(event.sigma_m);
   event.value_rad = FindListed(table, "event", "value_rad").value_or(event.value_rad);

@@ -116,9 +116,17 @@ void TomlTable::RefuseAbsent(std::string_view key, std::string_view why) const {
   Refuse(key, why);
 }
 
-void TomlTable::RefuseWord(std::string_view key, const std::string& word,
-                           const std::vector<std::string_view>& words) const {
-  Refuse(key, fmt::format("\"{}\" is none of {}", word, fmt::join(words, ", ")));
+std::optional<std::size_t> TomlTable::FindPlace(std::string_view key,
+                                                std::span<const std::string_view> words) {
+  const std::optional<std::string> word = FindString(key);
+  if (!word) return std::nullopt;
+  const auto found = std::find(words.begin(), words.end(), *word);
+  if (found != words.end() && !word->empty()) {
+    return static_cast<std::size_t>(found - words.begin());
+  }
+  std::vector<std::string_view> known(words.begin(), words.end());
+  std::erase(known, std::string_view());
+  Refuse(key, fmt::format("\"{}\" is none of {}", *word, fmt::join(known, ", ")));
 }
 
 const toml::node* TomlTable::Ask(std::string_view key) {

@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -89,6 +92,9 @@ class TomlTable {
   std::vector<TomlTable> FindTables(std::string_view key);  ///< [[key]]; empty where absent
   template <class T>
   std::optional<T> FindWord(std::string_view key, TomlWords<T> words);
+  /// Which of `words` it is; one that is empty is none.
+  std::optional<std::size_t> FindPlace(std::string_view key,
+                                       std::span<const std::string_view> words);
 
   /// The value of `found`, which must be there: Need("latitude_deg", FindNumber(...)).
   template <class T>
@@ -122,9 +128,6 @@ class TomlTable {
   double NumberOf(const toml::node& node, std::string_view key, TomlRange range) const;
   std::string PathOf(std::string_view key) const;
   std::string Named(std::string_view key) const;
-  [[noreturn]] void RefuseWord(std::string_view key, const std::string& word,
-                               const std::vector<std::string_view>& words) const;
-
   TomlDocument* document_;
   const toml::table* table_;
   std::string path_;  ///< "depth.cable"; empty for the top
@@ -148,14 +151,11 @@ Result<T> ReadTomlText(std::string_view text, const std::string& source, std::st
 
 template <class T>
 std::optional<T> TomlTable::FindWord(std::string_view key, TomlWords<T> words) {
-  const std::optional<std::string> word = FindString(key);
-  if (!word) return std::nullopt;
-  std::vector<std::string_view> known;
-  for (const auto& [name, value] : words) {
-    if (*word == name) return value;
-    known.push_back(name);
-  }
-  RefuseWord(key, *word, known);
+  std::vector<std::string_view> names;
+  for (const auto& [name, value] : words) names.push_back(name);
+  const auto place = FindPlace(key, names);
+  if (!place) return std::nullopt;
+  return std::next(words.begin(), static_cast<std::ptrdiff_t>(*place))->second;
 }
 
 template <class T>
