@@ -28,17 +28,27 @@ struct Delivery {
   int report = kDone;  ///< exit code of what is written beside the results
 };
 
+constexpr std::size_t kSaid = 5;  // of faults; all are in the files
+
+/// Why there is no survey, and what else was found that may be the reason.
+void SayUnusable(const Survey& survey, const RunRecord& record, const SourceRecord& source) {
+  Complain(survey.unusable);
+  for (std::size_t i = 0; i < std::min(record.faults.size(), kSaid); ++i) {
+    Complain(record.faults[i]);
+  }
+  const auto malformed = source.counts.find("malformed");
+  if (malformed != source.counts.end() && malformed->second > 0 && !source.faults.empty()) {
+    Complain(fmt::format("{} messages came and were refused; the first: {}", malformed->second,
+                         SentenceOf(source.faults.front())));
+  }
+}
+
 /// Writes one tool's result where it is not written yet, and says what it is; its exit code.
 int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& record,
             const SourceRecord& source, const Job& job) {
   const Survey& survey = result.survey;
   if (!survey.unusable.empty()) {
-    Complain(survey.unusable);
-    const auto malformed = source.counts.find("malformed");
-    if (malformed != source.counts.end() && malformed->second > 0 && !source.faults.empty()) {
-      Complain(fmt::format("{} messages came and were refused; the first: {}", malformed->second,
-                           SentenceOf(source.faults.front())));
-    }
+    SayUnusable(survey, record, source);
     return kUnusable;
   }
   const std::vector<OutputFile> files = ResultFiles(record, source, job, survey);
@@ -63,7 +73,6 @@ int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& recor
 bool Nothing(const ToolResult& result) { return !result.survey.unusable.empty(); }
 
 void SayLosses(const SourceRecord& source) {
-  constexpr std::size_t kSaid = 5;
   Complain("done, with losses or damage: see source.toml and run.toml");
   for (std::size_t i = 0; i < std::min(source.faults.size(), kSaid); ++i) {
     Complain(source.faults[i]);

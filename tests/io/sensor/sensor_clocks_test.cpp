@@ -3,10 +3,11 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "wellgyro/base/angle.h"
 #include "wellgyro/io/sensor/clock_join_internal.h"
@@ -179,16 +180,22 @@ TEST(SensorFiles, ClocksAreJoinedByTheMotionThatIsFelt) {
 }
 
 TEST(SensorFiles, AClockThatIsSetWrongIsTold) {
-  const Scratch scratch;
-  const StandsTables tables = TablesOf(Stands(), true, 60);
-  scratch.Write("tool.csv", tables.samples);
-  scratch.Write("tally.csv", tables.tally);
-  const SurveyedTables done = Do(scratch, {"tool.csv", "tally.csv"}, StandsJob());
-  ASSERT_TRUE(done.report);
-  EXPECT_NEAR(done.report->stamps_less_stops.value_or(0), 60, 1.5);
-  bool told = false;
-  for (const Fault& fault : done.faults) told = told || fault.code == FaultCode::kConflict;
-  EXPECT_TRUE(told);
+  const std::pair<double, const char*> wrong[] = {
+      {60, "one of the clocks is set wrong"},
+      {3600, "one of the clocks is in a time zone, 1 h from UTC"},
+      {-5400, "one of the clocks is in a time zone, 1.5 h from UTC"}};
+  for (const auto& [seconds, words] : wrong) {
+    const Scratch scratch;
+    const StandsTables tables = TablesOf(Stands(), true, seconds);
+    scratch.Write("tool.csv", tables.samples);
+    scratch.Write("tally.csv", tables.tally);
+    const SurveyedTables done = Do(scratch, {"tool.csv", "tally.csv"}, StandsJob());
+    ASSERT_TRUE(done.report);
+    EXPECT_NEAR(done.report->stamps_less_stops.value_or(0), seconds, 1.5);
+    const auto told = std::ranges::find(done.faults, FaultCode::kConflict, &Fault::code);
+    ASSERT_NE(told, done.faults.end());
+    EXPECT_THAT(told->text, testing::HasSubstr(words));
+  }
 }
 
 }  // namespace

@@ -90,6 +90,15 @@ class ClockPairs {
   std::vector<Pair> pairs_;
 };
 
+// Of two clocks that are `apart`, known to `allowed` [s]: time zones differ by quarters of an hour.
+std::string WhyApart(double apart, double allowed) {
+  constexpr double kQuarter = 900;
+  const double zones = kQuarter * std::round(apart / kQuarter);
+  if (zones == 0 || std::abs(apart - zones) > allowed) return "one of the clocks is set wrong";
+  return fmt::format("one of the clocks is in a time zone, {:g} h from UTC",
+                     std::abs(zones) / 3600);
+}
+
 class Joiner {
  public:
   Joiner(const Job& job, Surveyor& surveyor, Sink& faults,
@@ -246,8 +255,9 @@ class Joiner {
     faults_.OnFault(Fault{
         .code = FaultCode::kConflict,
         .text = fmt::format("the samples' UTC is {:.1f} s from what the stops of tool and depth "
-                            "say, {:.1f} s allowed: one of the clocks is set wrong",
-                            *report_.stamps_less_stops, std::max(limit, 1.0)),
+                            "say, {:.1f} s allowed: {}",
+                            *report_.stamps_less_stops, std::max(limit, 1.0),
+                            WhyApart(*report_.stamps_less_stops, std::max(limit, 1.0))),
         .source = samples_.string()});
   }
 
