@@ -1,16 +1,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "wellgyro/base/angle.h"
 #include "wellgyro/fit/tool_left_out_internal.h"
 #include "wellgyro/math/random.h"
+#include "wellgyro/math/statistics.h"
 
 namespace wellgyro::test {
 namespace {
@@ -24,27 +23,24 @@ TermBundle Bundle(int n, bool needed) {
   return bundle;
 }
 
-/// Of a coefficient pair the moments about zero of weight(theta), by the trapezium rule, which for
-/// what vanishes with all its derivatives at both ends converges faster than any power of the step.
+/// Moments of the density of the share of noise k, k^(n/2) exp(-k Q / 2) on (0, 1), by Simpson's
+/// rule in u, k = u^2, where it is smooth for odd n too.
 struct Moments {
-  double total = 0;
-  Vector2d first = Vector2d::Zero();
-  Matrix2d second = Matrix2d::Zero();
+  double mean = 0, variance = 0;
 };
-Moments ByQuadrature(const Vector2d& half_width, const std::function<double(const Vector2d&)>& of) {
-  constexpr int kHalf = 60;
-  Moments m;
-  const Vector2d step = half_width / kHalf;
-  for (int i = -kHalf; i <= kHalf; ++i) {
-    for (int j = -kHalf; j <= kHalf; ++j) {
-      const Vector2d theta(i * step[0], j * step[1]);
-      const double weight = of(theta) * step.prod();
-      m.total += weight;
-      m.first += weight * theta;
-      m.second += weight * theta * theta.transpose();
-    }
+Moments ByQuadrature(int n, double Q) {
+  constexpr int kSteps = 20000;
+  long double sum = 0, first = 0, second = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const long double u = static_cast<long double>(i) / kSteps, k = u * u;
+    const long double simpson = i == 0 || i == kSteps ? 1 : i % 2 == 1 ? 4 : 2;
+    const long double weight = simpson * std::pow(u, n + 1) * std::exp(-k * Q / 2);
+    sum += weight;
+    first += weight * k;
+    second += weight * k * k;
   }
-  return m;
+  const long double mean = first / sum;
+  return {static_cast<double>(mean), static_cast<double>(second / sum - mean * mean)};
 }
 
 /// Readings of two kept coefficients, two of a bundle that is left out, and one of the bench.
@@ -81,26 +77,18 @@ struct Case {
   }
 };
 
-// If the bundle is there, its coefficients are N(0, s^2), s the sigma each has of the readings; the
-// adjustment of all is N(theta, W^-1) about them. If not, they are zero. The odds are even before.
-TEST(ToolLeftOut, IsTheMixtureOfThereAndNot) {
+// Given the share k of noise, theta ~ N(0, (1 - k) / k W^-1) before the readings, and after them
+// N((1 - k) theta_full, (1 - k) W^-1).
+TEST(ToolLeftOut, IsTheMeanOverAllSharesOfNoise) {
   const std::vector<TermBundle> bundles = {Bundle(2, true), Bundle(2, false)};
   double least = 1, most = 0;
-  for (const double size : {0.0, 1.5, 3.0, 6.0}) {
+  for (const double size : {0.0, 1.5, 3.0, 9.0}) {
     for (const double unit : {1.0, 1e-4}) {
       const Case c(size, unit, 7);
-      const Vector2d s = c.W.inverse().diagonal().cwiseSqrt();
-      const auto likelihood = [&](const Vector2d& theta) {
-        return std::exp(-(theta - c.theta).dot(c.W * (theta - c.theta)) / 2);
-      };
-      const Moments there = ByQuadrature(9 * s, [&](const Vector2d& theta) {
-        return std::exp(-theta.cwiseQuotient(s).squaredNorm() / 2) / (kTwoPi * s.prod()) *
-               likelihood(theta);
-      });
-      const double p = there.total / (there.total + likelihood(Vector2d::Zero()));
-      const Vector2d mean = p * there.first / there.total;
-      const Matrix2d about = p * there.second / there.total - mean * mean.transpose();
-      const Matrix2d readings = there.second / there.total - mean / p * (mean / p).transpose();
+      const Moments k = ByQuadrature(2, c.theta.dot(c.W * c.theta));
+      const Vector2d mean = (1 - k.mean) * c.theta;
+      const Matrix2d cov =
+          (1 - k.mean) * c.W.inverse() + k.variance * c.theta * c.theta.transpose();
 
       const LeftOutErrors found = LeftOutErrorsOf(bundles, {0, 1}, {0}, c.full);
       // Of the kept, in their order: the tool's, the bench's; then the left-out ones.
@@ -108,18 +96,43 @@ TEST(ToolLeftOut, IsTheMixtureOfThereAndNot) {
       const VectorXd shift_kept = -c.K * mean;
       EXPECT_LT((found.shift.head<3>() - shift_kept).norm(), 1e-8 * shift_kept.norm());
       EXPECT_LT((found.shift.tail<2>() - mean).norm(), 1e-8 * mean.norm());
-      const MatrixXd cov_kept = c.K * about * c.K.transpose(), across = -c.K * about;
+      const MatrixXd cov_kept = c.K * cov * c.K.transpose(), across = -c.K * cov;
       EXPECT_LT((found.cov.topLeftCorner<3, 3>() - cov_kept).norm(), 1e-8 * cov_kept.norm());
       EXPECT_LT((found.cov.topRightCorner<3, 2>() - across).norm(), 1e-8 * across.norm());
-      const Matrix2d own = about + (1 - p) * readings;
-      EXPECT_LT((found.cov.bottomRightCorner<2, 2>() - own).norm(), 1e-8 * own.norm());
-      least = std::min(least, p);
-      most = std::max(most, p);
+      EXPECT_LT((found.cov.bottomRightCorner<2, 2>() - cov).norm(), 1e-8 * cov.norm());
+      least = std::min(least, k.mean);
+      most = std::max(most, k.mean);
     }
   }
-  // The cases reach from hardly to surely there.
-  EXPECT_LT(least, 0.4);
-  EXPECT_GT(most, 0.9);
+  // The cases reach from nearly all noise to hardly any.
+  EXPECT_LT(least, 0.1);
+  EXPECT_GT(most, 0.6);
+}
+
+// Of coefficients drawn from the prior, whatever its g, the errors are as large as the covariance.
+TEST(ToolLeftOut, ErrorsAreAsLargeAsStated) {
+  const Case c(0, 1, 7);
+  const std::vector<TermBundle> bundles = {Bundle(2, true), Bundle(2, false)};
+  const Matrix2d root = Matrix2d(c.W.inverse()).llt().matrixL();
+  Random random(5);
+  const auto drawn = [&] {
+    Vector2d z;
+    for (double& each : z) each = random.Normal();
+    return z;
+  };
+  constexpr int kDraws = 4000;
+  double squares = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double k = random.Uniform();
+    const Vector2d theta = std::sqrt((1 - k) / k) * root * drawn();
+    ToolAdjustment full = c.full;
+    full.x.segment<2>(2) = theta + root * drawn();
+    const LeftOutErrors found = LeftOutErrorsOf(bundles, {0, 1}, {0}, full);
+    const Vector2d error = found.shift.tail<2>() - theta;
+    squares += error.dot(found.cov.bottomRightCorner<2, 2>().inverse() * error);
+  }
+  EXPECT_GT(squares, ChiSquareQuantile(1e-4, 2 * kDraws));
+  EXPECT_LT(squares, ChiSquareQuantile(1 - 1e-4, 2 * kDraws));
 }
 
 // What is wrong with the kept ones is what an adjustment without the others makes of them.

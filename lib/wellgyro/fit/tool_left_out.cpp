@@ -7,28 +7,39 @@
 #include "wellgyro/fit/tool_choice_internal.h"
 #include "wellgyro/fit/tool_left_out_internal.h"
 #include "wellgyro/math/linear_algebra.h"
+#include "wellgyro/math/statistics.h"
 
 namespace wellgyro {
 namespace {
 
+/// Mean and variance of the share k by which noise hides n coefficients, of which Q = theta' W
+/// theta is found: its density is that of chi-square of n + 2 degrees at k Q, cut at k = 1.
+struct HiddenShare {
+  double mean = 0, variance = 0;
+};
+HiddenShare ShareHidden(double n, double Q) {
+  // With less the cut density is k^(n/2) to 1e-9.
+  constexpr double kNothing = 1e-9;
+  if (Q < kNothing) {
+    const double mean = (n + 2) / (n + 4);
+    return {mean, (n + 2) / (n + 6) - mean * mean};
+  }
+  const double all = ChiSquareCdf(Q, n + 2);
+  const double mean = (n + 2) / Q * ChiSquareCdf(Q, n + 4) / all;
+  const double square = (n + 2) * (n + 4) / (Q * Q) * ChiSquareCdf(Q, n + 6) / all;
+  return {mean, std::max(0.0, square - mean * mean)};
+}
+
 /// What the readings leave of a bundle's coefficients.
 struct BundleLeft {
-  double there = 0;      ///< probability
-  Eigen::VectorXd mean;  ///< if it is there
+  Eigen::VectorXd mean;
   Eigen::MatrixXd cov;
 };
-
-/// By its Bayes factor against none: with priors s of its coefficients, information W and
-/// W theta = h of the readings,
-///   ln B = (h' P h - ln det(1 + S W S)) / 2,   P = (W + S^-2)^-1,  S = diag s.
 BundleLeft LeftOf(const Eigen::MatrixXd& W, const Eigen::VectorXd& h) {
-  const Eigen::VectorXd s = InverseOfSymmetric(W).diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(h.size(), h.size());
-  const Cholesky M(one + s.asDiagonal() * W * s.asDiagonal());
-  const Eigen::VectorXd c = s.cwiseProduct(h);
-  const double log_odds = (M.Whitened(c).squaredNorm() - M.LogDeterminant()) / 2;
-  const Eigen::MatrixXd cov = s.asDiagonal() * M.Solve(one) * s.asDiagonal();
-  return {1 / (1 + std::exp(-log_odds)), cov * h, cov};
+  const Eigen::MatrixXd cov = InverseOfSymmetric(W);
+  const Eigen::VectorXd theta = cov * h;
+  const HiddenShare k = ShareHidden(static_cast<double>(h.size()), theta.dot(h));
+  return {(1 - k.mean) * theta, (1 - k.mean) * cov + k.variance * theta * theta.transpose()};
 }
 
 }  // namespace
@@ -60,21 +71,18 @@ LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std:
   const Eigen::MatrixXd W = N(l, l) - N(l, k) * K;
   const Eigen::VectorXd h = W * full.x(l).cwiseQuotient(unit(l));
   Eigen::VectorXd mean(n);
-  Eigen::MatrixXd in_kept = Eigen::MatrixXd::Zero(n, n), beyond = in_kept;
+  Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(n, n);
   Eigen::Index at = 0;
   for (const Eigen::Index size : sizes) {
     const BundleLeft b = LeftOf(W.block(at, at, size, size), h.segment(at, size));
-    mean.segment(at, size) = b.there * b.mean;
-    in_kept.block(at, at, size, size) =
-        b.there * (b.cov + (1 - b.there) * b.mean * b.mean.transpose());
-    beyond.block(at, at, size, size) = (1 - b.there) * b.cov;
+    mean.segment(at, size) = b.mean;
+    cov.block(at, at, size, size) = b.cov;
     at += size;
   }
   Eigen::MatrixXd errors(m + n, n);
   errors << unit(k).asDiagonal() * K, -Eigen::MatrixXd(unit(l).asDiagonal());
   left.shift = -errors * mean;
-  left.cov = errors * in_kept * errors.transpose();
-  left.cov.bottomRightCorner(n, n) += unit(l).asDiagonal() * beyond * unit(l).asDiagonal();
+  left.cov = errors * cov * errors.transpose();
   return left;
 }
 
