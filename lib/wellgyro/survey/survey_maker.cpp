@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -290,11 +291,18 @@ std::string SurveyMaker::WithoutNorth(const std::vector<DraftedRun>& drafted,
   }
   const auto motion = std::ranges::find(survey.checks, "rest_motion", &Check::code);
   const bool moved = motion != survey.checks.end() && motion->value && *motion->value > 0;
+  std::int64_t lost = 0, came = 0;
+  for (const RunSummary& run : survey.runs) {
+    lost += run.samples_lost;
+    came += run.samples;
+  }
+  // A stop with gaps is none.
+  const std::string gaps =
+      lost > 0 ? fmt::format("; {} of {} samples are missing", lost, lost + came) : "";
   return fmt::format(
       "no north was found: no stop of {:.0f} s at which the {}gyros tell one azimuth from its "
-      "mirror, "
-      "and the job gives no azimuth; {}, or use [alignment] method = \"external\"",
-      job_.alignment.min_still, moved ? "tool is still and the " : "",
+      "mirror, and the job gives no azimuth{}; {}, or use [alignment] method = \"external\"",
+      job_.alignment.min_still, moved ? "tool is still and the " : "", gaps,
       moved ? fmt::format("it moved while its depth rested, for up to {:.0f} s: hold it still at a "
                           "stop (slips, brake, centralisers)",
                           *motion->value)

@@ -114,6 +114,32 @@ TEST(Summary, WithAnUnseenFaultTheEndIsWithinItsShiftAndChanceTogether) {
   EXPECT_THAT(text, HasSubstr("\"not_shown\": []"));
 }
 
+// Where nothing tells the axes the hole may be its image across the meridian.
+TEST(Summary, AxesThatNothingTellsCountAsTheHolesImage) {
+  Survey survey = EndWithUnseenFaults(Quality::kGood);
+  survey.chosen[0].run = 1;
+  survey.chosen[0].p_WT_W.y() = 10;
+  survey.chosen[1].p_WT_W.y() = 110;
+  survey.checks = {{.code = "axes", .run = 1, .verdict = Verdict::kNotDone}};
+  const ToolSummary tool{.tool = 3, .folder = "a", .files = {}, .survey = &survey};
+  const std::string text = SummaryJson({&tool, 1}, {}, 0);
+  EXPECT_THAT(text, HasSubstr("\"cause\": \"axes\""));
+  EXPECT_THAT(text, HasSubstr("\"cause_shift_m\": 200.0"));
+  EXPECT_THAT(text, HasSubstr("\"not_shown\": [\n          \"axes\"\n"));
+  survey.checks[0].verdict = Verdict::kPass;
+  EXPECT_THAT(SummaryJson({&tool, 1}, {}, 0), HasSubstr("\"cause\": \"gyro_bias_step_x\""));
+}
+
+TEST(Summary, ATieInThatNoRunLeadsToIsOnTrust) {
+  Survey survey = EndWithUnseenFaults(Quality::kGood);
+  survey.chosen[0].kind = StationKind::kTieIn;
+  survey.chosen[0].md = 500;
+  survey.checks = {{.code = "tie_in_way", .verdict = Verdict::kNotDone}};
+  EXPECT_THAT(SummaryText(survey), HasSubstr("\non trust       tie_in: this run would not"));
+  survey.chosen[0].cov_p_WT_W.diagonal().setConstant(4);
+  EXPECT_THAT(SummaryText(survey), testing::Not(HasSubstr("on trust")));
+}
+
 // Of 9 and 1 m where chance has 4.9: only what the run does not show at any size, and what counts.
 TEST(Summary, WhatTheRunWouldNotShowIsNamed) {
   Survey survey = EndWithUnseenFaults(Quality::kGood);

@@ -163,7 +163,7 @@ TEST(GiveVerdict, ARunThatGaveNoStationDoesNotFailTheSurvey) {
 TEST(CheckTieIn, ATieInThatIsNotTheRunsFails) {
   Job job;
   job.tie_in.md = 100;
-  EXPECT_EQ(CheckTieIn(job, {}).verdict, Verdict::kNotDone);
+  EXPECT_EQ(CheckTieIn(job, {}, {}).verdict, Verdict::kNotDone);
   job.tie_in.inclination = 5 * kPi / 180;
   job.tie_in.azimuth = 0;
   Station near = StationAtMd(1, 105);
@@ -171,12 +171,34 @@ TEST(CheckTieIn, ATieInThatIsNotTheRunsFails) {
   near.cov_md_inc_azi(1, 1) = std::pow(0.01 * kPi / 180, 2);
   near.cov_md_inc_azi(2, 2) = 1;
   const std::vector<Station> stations{StationAtMd(1, 160), near};
-  const Check check = CheckTieIn(job, stations);
+  const Check check = CheckTieIn(job, stations, {});
   EXPECT_EQ(check.verdict, Verdict::kFail);
   EXPECT_NEAR(check.value.value_or(0), 5, 0.02);
   EXPECT_EQ(check.md.value_or(0), 105);
   job.tie_in.inclination = 0.2 * kPi / 180;
-  EXPECT_EQ(CheckTieIn(job, stations).verdict, Verdict::kPass) << "the azimuth of a vertical hole";
+  EXPECT_EQ(CheckTieIn(job, stations, {}).verdict, Verdict::kPass)
+      << "the azimuth of a vertical hole";
+}
+
+// A station 10 m off allows for 4 deg of hole between; a stop at the tie-in's own depth for none.
+TEST(CheckTieIn, AStopAtItsDepthTellsTwoDegrees) {
+  Job job;
+  job.tie_in = {.md = 500, .tvd = 490, .inclination = FromDegrees(12), .azimuth = FromDegrees(30)};
+  Station near = StationAtMd(1, 510);
+  near.inclination = FromDegrees(10);
+  near.azimuth = FromDegrees(30);
+  NorthFix stop{.md = 500, .azimuth = near.azimuth, .inclination = near.inclination};
+  stop.cov_attitude.diagonal().setConstant(std::pow(FromDegrees(0.1), 2));
+  RunSummary run{.run = 1};
+  EXPECT_EQ(CheckTieIn(job, {&near, 1}, {&run, 1}).verdict, Verdict::kPass);
+  run.fixes = {stop};
+  const Check check = CheckTieIn(job, {&near, 1}, {&run, 1});
+  EXPECT_EQ(check.verdict, Verdict::kFail);
+  EXPECT_NEAR(check.value.value_or(0), 2, 1e-6);
+  EXPECT_EQ(check.run, 1);
+  run.fixes[0].external = true;
+  EXPECT_EQ(CheckTieIn(job, {&near, 1}, {&run, 1}).verdict, Verdict::kPass)
+      << "an azimuth from outside is no word of the run";
 }
 
 TEST(ShortNumber, HasNoPowersOfTenWhereAReaderWantsNone) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "wellgyro/record/run_fit.h"
 
@@ -22,6 +23,28 @@ const RunSlip* SlipOf(const Survey& survey, std::int32_t run) {
   return of == survey.runs.end() ? nullptr : of->slip.get();
 }
 
+/// The check was made; `run` 0: of the whole survey.
+bool IsTold(const Survey& survey, std::int32_t run, std::string_view code) {
+  return std::none_of(survey.checks.begin(), survey.checks.end(), [&](const Check& c) {
+    return c.run == run && c.code == code && c.verdict == Verdict::kNotDone;
+  });
+}
+
+/// A tie-in below the datum whose place the job calls exact, and no run has been on the way to it.
+bool IsTieInTrusted(const Survey& survey) {
+  const Station& tie = survey.chosen.front();
+  const bool exact = tie.kind == StationKind::kTieIn && tie.cov_p_WT_W.isZero(0);
+  return exact && tie.md > 0 && !IsTold(survey, 0, "tie_in_way");
+}
+
+/// Axes of the other hand, gyros and accelerometers alike: gravity and the Earth's rate are those
+/// of the hole's image across the meridian, A for -A, and so its east is the other one.
+RunReliability MirroredAxes(const Survey& survey, std::int32_t run) {
+  const auto first = std::ranges::find(survey.chosen, run, &Station::run);
+  const double east = survey.chosen.back().p_WT_W.y() - first->p_WT_W.y();
+  return {.code = "axes", .shift_W = Eigen::Vector3d(0, -2 * east, 0)};
+}
+
 }  // namespace
 
 std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey) {
@@ -32,6 +55,7 @@ std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey) {
   std::vector<RunReliability> faults = found->reliability;
   const RunSlip* slip = SlipOf(survey, end.run);
   if (slip != nullptr && slip->reliability.smallest) faults.push_back(slip->reliability);
+  if (!IsTold(survey, end.run, "axes")) faults.push_back(MirroredAxes(survey, end.run));
   std::vector<Eigen::Vector2d> shifts;
   for (const RunReliability& fault : faults) shifts.push_back(fault.shift_W.head<2>());
   const double sigmas = ConfidenceFactor(kConfidence, 2);
@@ -54,12 +78,8 @@ std::optional<UnseenFaults> UnseenFaultsOf(const Survey& survey) {
   if (slip != nullptr && slip->unseen_W.norm() > chance) {
     unseen.unshown.emplace_back("depth_slip");
   }
+  if (IsTieInTrusted(survey)) unseen.unshown.emplace_back("tie_in");
   if (unseen.cause.empty()) return std::nullopt;
-  const bool axes_told =
-      std::none_of(survey.checks.begin(), survey.checks.end(), [&](const Check& c) {
-        return c.run == end.run && c.code == "axes" && c.verdict == Verdict::kNotDone;
-      });
-  if (!axes_told) unseen.unshown.emplace_back("axes");
   unseen.tvd = ConfidenceFactor(kConfidence, 1) * std::sqrt(end.cov_p_WT_W(2, 2)) + deep;
   return unseen;
 }

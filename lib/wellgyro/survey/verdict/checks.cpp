@@ -433,7 +433,7 @@ std::vector<Check> MakeChecks(const Job& job, const CheckInputs& inputs) {
   CheckDepthScale(job, inputs.marks, checks);
   CheckForesights(job, inputs, checks);
   CheckGrid(job, checks);
-  checks.push_back(CheckTieIn(job, inputs.passes));
+  checks.push_back(CheckTieIn(job, inputs.passes, inputs.runs));
   if (job.tie_in.md > 0) checks.push_back(CheckTieInPlace(job.tie_in));
   CheckNoise(job, checks);
   return checks;

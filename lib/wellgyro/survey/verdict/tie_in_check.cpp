@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -23,10 +24,35 @@ constexpr double kTurned = 0.05;  // of a way, by a north 3 deg aside: 2 sin 1.5
 constexpr double kPlaces = 1;     // that nobody asks for; of TVD, which has no slot [m]
 constexpr double kBendMost = FromDegrees(12) / 30;  // of a hole that a motor builds [rad/m]
 
+/// Where a run itself says which way the hole goes.
+struct Direction {
+  double md, inclination, azimuth;
+  double variance_inclination, variance_azimuth;
+  std::int32_t run;
+};
+
+std::vector<Direction> DirectionsOf(std::span<const Station> stations,
+                                    std::span<const RunSummary> runs) {
+  std::vector<Direction> all;
+  for (const Station& s : stations) {
+    if (s.status == StationStatus::kRejected) continue;
+    all.push_back(
+        {s.md, s.inclination, s.azimuth, s.cov_md_inc_azi(1, 1), s.cov_md_inc_azi(2, 2), s.run});
+  }
+  for (const RunSummary& run : runs) {
+    for (const NorthFix& fix : run.fixes) {
+      if (!fix.md || fix.external) continue;
+      all.push_back({*fix.md, fix.inclination, fix.azimuth, fix.cov_attitude(0, 0),
+                     fix.cov_attitude(1, 1), run.run});
+    }
+  }
+  return all;
+}
+
 // 1-sigma of the tangent: sqrt(var I + sin^2 I var A), the latter 1 at most, where A is unknown.
-double SigmaOfDirection(const Station& s) {
-  const double across = std::pow(std::sin(s.inclination), 2) * s.cov_md_inc_azi(2, 2);
-  return std::sqrt(s.cov_md_inc_azi(1, 1) + std::min(across, 1.0));
+double SigmaOfDirection(const Direction& d) {
+  const double across = std::pow(std::sin(d.inclination), 2) * d.variance_azimuth;
+  return std::sqrt(d.variance_inclination + std::min(across, 1.0));
 }
 
 /// 1-sigma along `p`.
@@ -86,15 +112,15 @@ Check CheckTieInWay(const TieIn& tie_in, std::vector<PathStation> seen) {
                            "TVD: 0.5 deg of the way that runs measured, 1 m and 3 sigma"));
 }
 
-Check CheckTieIn(const Job& job, std::span<const Station> stations) {
-  const Station* nearest = nullptr;
-  const auto away = [&](const Station& s) { return std::abs(s.md - job.tie_in.md); };
-  for (const Station& s : stations) {
-    if (s.status == StationStatus::kRejected || !(away(s) <= units::kStand)) continue;
-    if (nearest == nullptr || away(s) < away(*nearest)) nearest = &s;
-  }
+Check CheckTieIn(const Job& job, std::span<const Station> stations,
+                 std::span<const RunSummary> runs) {
   if (!job.tie_in.inclination) return NotDone("tie_in", 0, "the run itself gives its direction");
-  if (nearest == nullptr) return NotDone("tie_in", 0, "no station within 30 m of it");
+  const auto away = [&](const Direction& d) { return std::abs(d.md - job.tie_in.md); };
+  const std::vector<Direction> all = DirectionsOf(stations, runs);
+  const auto nearest = std::ranges::min_element(all, {}, away);
+  if (nearest == all.end() || !(away(*nearest) <= units::kStand)) {
+    return NotDone("tie_in", 0, "no station or stop within 30 m of it");
+  }
   const Eigen::Vector3d tie = Tangent(*job.tie_in.inclination, *job.tie_in.azimuth);
   const Eigen::Vector3d run = Tangent(nearest->inclination, nearest->azimuth);
   const double angle = std::atan2(tie.cross(run).norm(), tie.dot(run));

@@ -7,15 +7,17 @@
 #include "wellgyro/record/check.h"
 #include "wellgyro/record/station.h"
 #include "wellgyro/survey/job.h"
+#include "wellgyro/survey/survey.h"
 #include "wellgyro/trajectory/path.h"
 
 namespace wellgyro {
 
-/// `tie_in` [deg]: the angle between the tie-in's direction and that of the station nearest to it,
-/// within 30 m. Fails beyond 3 sigma of the station, 0.5 deg, by which two good surveys of one hole
-/// may differ, and what a hole of 12 deg in 30 m, as motors build it, bends between. Not done where
-/// the job gives the tie-in no direction.
-WELLGYRO_EXPORT Check CheckTieIn(const Job& job, std::span<const Station> stations);
+/// `tie_in` [deg]: the angle between the tie-in's direction and that of the run's station or north
+/// fix nearest to it, within 30 m. Fails beyond 3 sigma of that, 0.5 deg, by which two good surveys
+/// of one hole may differ, and what a hole of 12 deg in 30 m, as motors build it, bends between. Not
+/// done where the job gives the tie-in no direction.
+WELLGYRO_EXPORT Check CheckTieIn(const Job& job, std::span<const Station> stations,
+                                 std::span<const RunSummary> runs);
 
 /// `tie_in_way` [m]: how far the tie-in's place is from where the runs' own directions lead from
 /// the well head. The hole above the first station and between the last and the tie-in may go
