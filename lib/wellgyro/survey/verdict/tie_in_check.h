@@ -14,8 +14,8 @@ namespace wellgyro {
 
 /// `tie_in` [deg]: the angle between the tie-in's direction and that of the run's station or north
 /// fix nearest to it, within 30 m. Fails beyond 3 sigma of that, 0.5 deg, by which two good surveys
-/// of one hole may differ, and what a hole of 12 deg in 30 m, as motors build it, bends between. Not
-/// done where the job gives the tie-in no direction.
+/// of one hole may differ, and what a hole of 12 deg in 30 m, as motors build it, bends between.
+/// Not done where the job gives the tie-in no direction.
 WELLGYRO_EXPORT Check CheckTieIn(const Job& job, std::span<const Station> stations,
                                  std::span<const RunSummary> runs);
 
