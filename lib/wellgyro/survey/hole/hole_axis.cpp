@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "wellgyro/estimate/turn_columns.h"
 #include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/math/plane.h"
 #include "wellgyro/math/so3.h"
@@ -17,6 +18,7 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // A way below which depth tells of no motion: marks leave as much unknown, and a hole that turns by
@@ -37,10 +39,13 @@ Vector3d Turned(const Node& node, Complex across) {
 
 /// Mean over the knot. With theta(t) the turn across since its begin, as M sees it,
 ///   mean theta = turn - (integral of t d theta) / T = turn / 2 + i turn_per_roll,
-/// to which both ends of the knot are witnesses: what the gyros' errors turn by cancels.
-Vector3d MeanAxis(const Increment& inc, const Node& begin, const Node& end) {
+/// to which both ends of the knot are witnesses: what the gyros' errors turn by cancels, but for
+/// skew, whose turn goes round with the tool.
+Vector3d MeanAxis(const Increment& inc, const Node& begin, const Node& end,
+                  const Vector2d& skew_T) {
   const Complex turn = ComplexOf(inc.turn_M);
-  const Complex mean = 0.5 * turn + Complex(0, 1) * ComplexOf(inc.turn_per_roll);
+  const Complex mean = 0.5 * turn + Complex(0, 1) * ComplexOf(inc.turn_per_roll) -
+                       ComplexOf(SkewBeforeHalf(inc) * skew_T);
   return (Turned(begin, std::polar(1., inc.roll_before) * mean) +
           Turned(end, std::polar(1., -inc.roll_after) * (mean - turn))) /
          2;
@@ -73,10 +78,11 @@ Eigen::Vector4d WeightsOfMeans(Eigen::Matrix<double, 3, 4> moments,
 
 /// From the tool's axis at the end of each knot to the parabola's: phi of R_LT Exp(phi) [rad]; zero
 /// where there is none.
-std::vector<Vector3d> Beside(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+std::vector<Vector3d> Beside(std::span<const RunKnot> knots, std::span<const Node> nodes,
+                             const Vector2d& skew_T) {
   std::vector<Vector3d> means, beside(knots.size(), Vector3d::Zero());
   for (std::size_t k = 0; k < knots.size(); ++k) {
-    means.push_back(MeanAxis(knots[k].increment, nodes[k], nodes[k + 1]));
+    means.push_back(MeanAxis(knots[k].increment, nodes[k], nodes[k + 1], skew_T));
   }
   for (std::size_t k = 1; k + 2 < knots.size(); ++k) {
     const std::span<const RunKnot> four = knots.subspan(k - 1, 4);
@@ -110,8 +116,9 @@ double MedianAbout(std::span<const double> sizes, std::size_t k) {
 
 }  // namespace
 
-std::vector<Matrix3d> OnHoleAxis(std::span<const RunKnot> knots, std::span<const Node> nodes) {
-  const std::vector<Vector3d> beside = Beside(knots, nodes);
+std::vector<Matrix3d> OnHoleAxis(std::span<const RunKnot> knots, std::span<const Node> nodes,
+                                 const Vector2d& skew_T) {
+  const std::vector<Vector3d> beside = Beside(knots, nodes, skew_T);
   std::vector<double> sizes;
   for (const Vector3d& phi : beside) sizes.push_back(phi.norm());
   std::vector<Matrix3d> along;

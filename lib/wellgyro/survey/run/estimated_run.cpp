@@ -187,11 +187,19 @@ RunEstimate EstimateFrom(const EstimateSetup& setup, const RunHistory& history,
   return EstimateRun(setup, history.knots, starts, NodesOf(history));
 }
 
+/// By which the gyros x and y see the roll: what was found beside what is known.
+Eigen::Vector2d SkewOf(const RunEstimate& estimate) {
+  const ErrorPriors& known = estimate.end.setup.errors;
+  return {known.gyro_misalignment_x + estimate.errors[kMisalignmentX],
+          known.gyro_misalignment_y + estimate.errors[kMisalignmentY]};
+}
+
 }  // namespace
 
 SmoothedRun SmoothedOf(const RunEstimate& estimate, const RunHistory& history) {
   SmoothedRun run;
-  const std::vector<Eigen::Matrix3d> R_LT = OnHoleAxis(history.knots, estimate.nodes);
+  const std::vector<Eigen::Matrix3d> R_LT =
+      OnHoleAxis(history.knots, estimate.nodes, SkewOf(estimate));
   for (std::size_t k = 0; k < history.knots.size(); ++k) {
     run.attitude.push_back(AttitudeOf(history.knots[k], R_LT[k], estimate.cov_phi_T[k + 1]));
     if (estimate.ambiguous) ForgetAzimuth(run.attitude.back());
