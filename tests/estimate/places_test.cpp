@@ -124,7 +124,7 @@ TEST(Places, WhatSmoothingMissesOfABendIsStated) {
     nodes[k].speed = kFast;
     const double at = 0.6 + kBend * std::max(0.0, nodes[k].md - kFast * kFrom);
     nodes[k].R_LT.col(2) = Eigen::Vector3d(std::sin(at), 0, std::cos(at));
-    if (k < knots.size()) knots[k].increment.seconds = 1;
+    if (k < knots.size()) knots[k].increment.seconds = 1, knots[k].increment.roll_seen = true;
   }
   std::vector<KnotPlace> places;
   PlaceKnots(SiteAt(0.8, 0), nullptr, knots, nodes, places);
@@ -140,6 +140,10 @@ TEST(Places, WhatSmoothingMissesOfABendIsStated) {
   EXPECT_GT(most, 0.2 * kFast * kFast * kBend);
   EXPECT_LT(places[10].acceleration_missed, 1e-9);
   EXPECT_LT(places[50].acceleration_missed, 2e-5);
+  // A roll that is sought makes turns of its own.
+  for (RunKnot& knot : knots) knot.increment.roll_seen = false;
+  PlaceKnots(SiteAt(0.8, 0), nullptr, knots, nodes, places);
+  EXPECT_EQ(places[kFrom].acceleration_missed, 0);
 }
 
 // Along the arc t = (sin I, 0, cos I) the Earth's rate about the axis is W (cos(lat) sin I -

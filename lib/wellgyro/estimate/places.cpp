@@ -54,7 +54,8 @@ struct Bends {
 /// Smoothed by twicing (Tukey, Exploratory Data Analysis, 1977): S + S (1 - S) with S a mean of
 /// three, over steady ways (-1, 4, 3, 4, -1) / 9, which is exact for cubics. By the way and not by
 /// time: a tool that starts or stops went less. What is left is the hole's where it bends within
-/// few knots, and else the tool's shaking.
+/// few knots, and else the tool's shaking; where the roll is hidden it is whatever the roll that is
+/// sought makes of the gyros, and says nothing of the hole.
 Bends BendsOf(std::span<const RunKnot> knots, std::span<const Node> nodes) {
   std::vector<Vector3d> turns(knots.size(), Vector3d::Zero());
   std::vector<double> ways(knots.size(), 0);
@@ -69,7 +70,9 @@ Bends BendsOf(std::span<const RunKnot> knots, std::span<const Node> nodes) {
   for (std::size_t k = 0; k < knots.size(); ++k) {
     bends.curvature[k] += rest[k];
     const double way = std::abs(ways[k]);
-    if (way > kTellingWay) bends.left[k] = (turns[k] - ways[k] * rest[k]).norm() / way;
+    if (way > kTellingWay && !RollIsHidden(knots[k])) {
+      bends.left[k] = (turns[k] - ways[k] * rest[k]).norm() / way;
+    }
   }
   return bends;
 }

@@ -12,34 +12,39 @@
 namespace wellgyro {
 namespace {
 
-/// Mean and variance of the share k by which noise hides n coefficients, of which Q = theta' W
-/// theta is found: its density is that of chi-square of n + 2 degrees at k Q, cut at k = 1.
+/// Of n coefficients that are there, of which Q = theta' W theta is found: mean and variance of the
+/// share k by which noise hides them, whose density is that of chi-square of n + 2 degrees at k Q,
+/// cut at k = 1; and ln of the Bayes factor against none, of the integral of
+/// k^(n/2) exp((1 - k) Q / 2).
 struct HiddenShare {
-  double mean = 0, variance = 0;
+  double mean = 0, variance = 0, ln_bayes = 0;
 };
 HiddenShare ShareHidden(double n, double Q) {
   // With less the cut density is k^(n/2) to 1e-9.
   constexpr double kNothing = 1e-9;
   if (Q < kNothing) {
     const double mean = (n + 2) / (n + 4);
-    return {mean, (n + 2) / (n + 6) - mean * mean};
+    return {mean, (n + 2) / (n + 6) - mean * mean, std::log(2 / (n + 2))};
   }
-  const double all = ChiSquareCdf(Q, n + 2);
+  const double all = ChiSquareCdf(Q, n + 2), a = n / 2 + 1;
   const double mean = (n + 2) / Q * ChiSquareCdf(Q, n + 4) / all;
   const double square = (n + 2) * (n + 4) / (Q * Q) * ChiSquareCdf(Q, n + 6) / all;
-  return {mean, std::max(0.0, square - mean * mean)};
+  return {mean, std::max(0.0, square - mean * mean),
+          Q / 2 + a * std::log(2 / Q) + std::lgamma(a) + std::log(all)};
 }
 
 /// What the readings leave of a bundle's coefficients.
 struct BundleLeft {
-  Eigen::VectorXd mean;
+  double there = 0;      ///< probability, of even odds before
+  Eigen::VectorXd mean;  ///< if it is there
   Eigen::MatrixXd cov;
 };
 BundleLeft LeftOf(const Eigen::MatrixXd& W, const Eigen::VectorXd& h) {
   const Eigen::MatrixXd cov = InverseOfSymmetric(W);
   const Eigen::VectorXd theta = cov * h;
   const HiddenShare k = ShareHidden(static_cast<double>(h.size()), theta.dot(h));
-  return {(1 - k.mean) * theta, (1 - k.mean) * cov + k.variance * theta * theta.transpose()};
+  return {1 / (1 + std::exp(-k.ln_bayes)), (1 - k.mean) * theta,
+          (1 - k.mean) * cov + k.variance * theta * theta.transpose()};
 }
 
 }  // namespace
@@ -71,18 +76,21 @@ LeftOutErrors LeftOutErrorsOf(const std::vector<TermBundle>& bundles, const std:
   const Eigen::MatrixXd W = N(l, l) - N(l, k) * K;
   const Eigen::VectorXd h = W * full.x(l).cwiseQuotient(unit(l));
   Eigen::VectorXd mean(n);
-  Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd in_kept = Eigen::MatrixXd::Zero(n, n), beyond = in_kept;
   Eigen::Index at = 0;
   for (const Eigen::Index size : sizes) {
     const BundleLeft b = LeftOf(W.block(at, at, size, size), h.segment(at, size));
-    mean.segment(at, size) = b.mean;
-    cov.block(at, at, size, size) = b.cov;
+    mean.segment(at, size) = b.there * b.mean;
+    in_kept.block(at, at, size, size) =
+        b.there * (b.cov + (1 - b.there) * b.mean * b.mean.transpose());
+    beyond.block(at, at, size, size) = (1 - b.there) * b.cov;
     at += size;
   }
   Eigen::MatrixXd errors(m + n, n);
   errors << unit(k).asDiagonal() * K, -Eigen::MatrixXd(unit(l).asDiagonal());
   left.shift = -errors * mean;
-  left.cov = errors * cov * errors.transpose();
+  left.cov = errors * in_kept * errors.transpose();
+  left.cov.bottomRightCorner(n, n) += unit(l).asDiagonal() * beyond * unit(l).asDiagonal();
   return left;
 }
 
