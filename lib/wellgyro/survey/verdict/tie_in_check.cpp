@@ -41,7 +41,7 @@ std::vector<Direction> DirectionsOf(std::span<const Station> stations,
   }
   for (const RunSummary& run : runs) {
     for (const NorthFix& fix : run.fixes) {
-      if (!fix.md || fix.external) continue;
+      if (run.misrun || !fix.md || fix.external) continue;
       all.push_back({*fix.md, fix.inclination, fix.azimuth, fix.cov_attitude(0, 0),
                      fix.cov_attitude(1, 1), run.run});
     }
