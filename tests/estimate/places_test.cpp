@@ -112,40 +112,6 @@ TEST(Places, AHoleThatWavesAcceleratesAsItBends) {
   }
 }
 
-// A hole that begins to bend within a knot: smoothed curvature sees it over five. What is stated to
-// be missed is what is missed, and in a steady bend or a straight hole there is none.
-TEST(Places, WhatSmoothingMissesOfABendIsStated) {
-  constexpr double kFast = 4, kBend = 2.3e-3;  // [m/s], [rad/m], 4 deg in 30 m
-  constexpr std::size_t kFrom = 30;
-  std::vector<RunKnot> knots(60);
-  std::vector<Node> nodes(knots.size() + 1);
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    nodes[k].md = kFast * static_cast<double>(k);
-    nodes[k].speed = kFast;
-    const double at = 0.6 + kBend * std::max(0.0, nodes[k].md - kFast * kFrom);
-    nodes[k].R_LT.col(2) = Eigen::Vector3d(std::sin(at), 0, std::cos(at));
-    if (k < knots.size()) knots[k].increment.seconds = 1, knots[k].increment.roll_seen = true;
-  }
-  std::vector<KnotPlace> places;
-  PlaceKnots(SiteAt(0.8, 0), nullptr, knots, nodes, places);
-  double most = 0;
-  for (std::size_t k = 3; k + 3 < knots.size(); ++k) {
-    const Eigen::Vector3d tangent = 0.5 * (nodes[k].tangent_L() + nodes[k + 1].tangent_L());
-    const Eigen::Vector3d a =
-        places[k].acceleration_L - 2 * places[k].w_IL_L.cross(kFast * tangent);
-    const double missed = std::abs(a.norm() - (k < kFrom ? 0 : kFast * kFast * kBend));
-    EXPECT_NEAR(places[k].acceleration_missed, missed, 2e-5) << k;
-    most = std::max(most, missed);
-  }
-  EXPECT_GT(most, 0.2 * kFast * kFast * kBend);
-  EXPECT_LT(places[10].acceleration_missed, 1e-9);
-  EXPECT_LT(places[50].acceleration_missed, 2e-5);
-  // A roll that is sought makes turns of its own.
-  for (RunKnot& knot : knots) knot.increment.roll_seen = false;
-  PlaceKnots(SiteAt(0.8, 0), nullptr, knots, nodes, places);
-  EXPECT_EQ(places[kFrom].acceleration_missed, 0);
-}
-
 // Along the arc t = (sin I, 0, cos I) the Earth's rate about the axis is W (cos(lat) sin I -
 // sin(lat) cos I) = -W sin(lat - I): what a tool that only slides seems to roll by. The latitude
 // goes with the way, by 1e-4 of what the inclination does.

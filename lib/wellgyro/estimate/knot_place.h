@@ -15,8 +15,6 @@ struct KnotPlace {
   /// the node about the vertical is that of a vector fixed in the tool: the path is drawn from the
   /// node's own azimuth, and so has no information on it.
   Eigen::Vector3d acceleration_L = Eigen::Vector3d::Zero();
-  /// 1-sigma of it across the axis, by what the smoothed curvature leaves of the turn [m/s^2].
-  double acceleration_missed = 0;
   /// What the Earth's rate about the axis changes by, from this knot to the next [rad/s]: so does
   /// the inertial roll rate of a tool that does not turn in its hole.
   double axial_change = 0;

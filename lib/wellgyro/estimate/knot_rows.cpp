@@ -223,11 +223,9 @@ void KnotRows::AddForce(const Terms& t, NormalBlock& block) {
   force += t.delta / 24 * inc.force_M.z() * Flat(t.turn);
   const Vector3d force_per_roll = Flat(inc.force_per_roll - t.delta / 12 * across);
   // M is where half of the measured turn leads. Half of an unobserved turn is missing: 1-sigma
-  // unseen / 2 times gravity. So is what the hole's curvature, smoothed, misses of the path.
+  // unseen / 2 times gravity.
   const double noise = std::max(setup_.errors.accel_noise, kLeastForce) / std::sqrt(t.dt);
-  const double seen = Square(noise);
-  const double missed =
-      Square(0.5 * t.knot.unseen * t.place.site.gravity) + Square(t.place.acceleration_missed);
+  const double seen = Square(noise), missed = Square(0.5 * t.knot.unseen * t.place.site.gravity);
   const double whiten = 1 / std::sqrt(seen + missed);
   const Matrix3d px = Skew(p_M);
 

@@ -45,18 +45,10 @@ std::vector<Vector3d> MeansOfThree(std::span<const Vector3d> turns, std::span<co
   return means;
 }
 
-/// The hole about each knot.
-struct Bends {
-  std::vector<Vector3d> curvature;  ///< d(tangent)/d(md), smoothed [1/m]
-  std::vector<double> left;         ///< of the knot's own turn over its way, what that leaves [1/m]
-};
-
-/// Smoothed by twicing (Tukey, Exploratory Data Analysis, 1977): S + S (1 - S) with S a mean of
-/// three, over steady ways (-1, 4, 3, 4, -1) / 9, which is exact for cubics. By the way and not by
-/// time: a tool that starts or stops went less. What is left is the hole's where it bends within
-/// few knots, and else the tool's shaking; where the roll is hidden it is whatever the roll that is
-/// sought makes of the gyros, and says nothing of the hole.
-Bends BendsOf(std::span<const RunKnot> knots, std::span<const Node> nodes) {
+/// d(tangent)/d(md) of the hole about each knot, smoothed by twicing (Tukey, Exploratory Data
+/// Analysis, 1977): S + S (1 - S) with S a mean of three, over steady ways (-1, 4, 3, 4, -1) / 9,
+/// which is exact for cubics. By the way and not by time: a tool that starts or stops went less.
+std::vector<Vector3d> Curvature(std::span<const RunKnot> knots, std::span<const Node> nodes) {
   std::vector<Vector3d> turns(knots.size(), Vector3d::Zero());
   std::vector<double> ways(knots.size(), 0);
   for (std::size_t k = 0; k < knots.size(); ++k) {
@@ -64,17 +56,11 @@ Bends BendsOf(std::span<const RunKnot> knots, std::span<const Node> nodes) {
     turns[k] = nodes[k + 1].tangent_L() - nodes[k].tangent_L();
     ways[k] = 0.5 * knots[k].increment.seconds * (nodes[k].speed + nodes[k + 1].speed);
   }
-  Bends bends{MeansOfThree(turns, ways), std::vector<double>(knots.size(), 0)};
-  for (std::size_t k = 0; k < knots.size(); ++k) turns[k] -= ways[k] * bends.curvature[k];
+  std::vector<Vector3d> curvature = MeansOfThree(turns, ways);
+  for (std::size_t k = 0; k < knots.size(); ++k) turns[k] -= ways[k] * curvature[k];
   const std::vector<Vector3d> rest = MeansOfThree(turns, ways);
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    bends.curvature[k] += rest[k];
-    const double way = std::abs(ways[k]);
-    if (way > kTellingWay && !RollIsHidden(knots[k])) {
-      bends.left[k] = (turns[k] - ways[k] * rest[k]).norm() / way;
-    }
-  }
-  return bends;
+  for (std::size_t k = 0; k < knots.size(); ++k) curvature[k] += rest[k];
+  return curvature;
 }
 
 /// How much the hole turns about each knot: root mean square over a stand on either side of
@@ -126,8 +112,8 @@ Site SiteBy(const Site& first, const Vector3d& p_W) {
 void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKnot> knots,
                 std::span<const Node> nodes, std::vector<KnotPlace>& places) {
   places.resize(knots.size());
-  const Bends bends = BendsOf(knots, nodes);
-  const std::vector<double> hole_turns = Turns(knots, nodes, bends.curvature);
+  const std::vector<Vector3d> curvature = Curvature(knots, nodes);
+  const std::vector<double> hole_turns = Turns(knots, nodes, curvature);
   Vector3d p_W = before != nullptr ? before->p_W : Vector3d::Zero();
   Site site = SiteBy(first, p_W);
   double md = nodes[0].md;
@@ -154,8 +140,7 @@ void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKn
     place.axial_change = 0;
     if (k > 0) places[k - 1].axial_change = earth.dot(tangent) - axial;
     axial = earth.dot(tangent);
-    place.acceleration_L = speed * speed * bends.curvature[k] + (2 * earth + transport).cross(v);
-    place.acceleration_missed = speed * speed * bends.left[k];
+    place.acceleration_L = speed * speed * curvature[k] + (2 * earth + transport).cross(v);
     place.roll_walk = RollWalkOf(tangent, hole_turns[k], speed);
     const double dt = knots[k].increment.seconds;
     place.since_start = time + 0.5 * dt;

@@ -19,8 +19,7 @@ Site SiteBy(const Site& first, const Eigen::Vector3d& p_W);
 /// Where every knot of a run stands by the nodes as they are now: site, rotation of L, and the
 /// acceleration of the path across itself: speed squared by the hole's curvature, which is the
 /// tangents' change by the way gone in five knots, and never the tool's shaking: a whirl would
-/// rectify with it. Of a hole that waves in 15 knots .3 % are lost, in 6 a ninth; what is left of a
-/// knot's own turn is the error of the acceleration.
+/// rectify with it. Of a hole that waves in 15 knots .3 % are lost, in 6 a ninth.
 /// `first`: of the run; `before`: where a part of it begins, nullptr: there.
 void PlaceKnots(const Site& first, const RunState* before, std::span<const RunKnot> knots,
                 std::span<const Node> nodes, std::vector<KnotPlace>& places);
