@@ -30,9 +30,8 @@ struct Delivery {
 
 constexpr std::size_t kSaid = 5;  // of faults; all are in the files
 
-/// Why there is no survey, and what else was found that may be the reason.
-void SayUnusable(const Survey& survey, const RunRecord& record, const SourceRecord& source) {
-  Complain(survey.unusable);
+/// Where there is no survey at all: what else was found that may be the reason.
+void SayReasons(const RunRecord& record, const SourceRecord& source) {
   for (std::size_t i = 0; i < std::min(record.faults.size(), kSaid); ++i) {
     Complain(record.faults[i]);
   }
@@ -48,7 +47,7 @@ int Deliver(Delivery& delivery, const ToolResult& result, const RunRecord& recor
             const SourceRecord& source, const Job& job) {
   const Survey& survey = result.survey;
   if (!survey.unusable.empty()) {
-    SayUnusable(survey, record, source);
+    Complain(survey.unusable);
     return kUnusable;
   }
   const std::vector<OutputFile> files = ResultFiles(record, source, job, survey);
@@ -96,7 +95,10 @@ int DeliverTools(Delivery& delivery, const std::vector<ToolResult>& results, con
     if (one == kUnusable && !Nothing(result)) return kUnusable;
     losses = losses || one == kUnusable || HasLosses(source, result.survey);
   }
-  if (!any) return kUnusable;
+  if (!any) {
+    SayReasons(record, source);
+    return kUnusable;
+  }
   if (losses) SayLosses(source);
   return losses ? kDoneWithLosses : kDone;
 }

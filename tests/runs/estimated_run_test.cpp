@@ -319,27 +319,32 @@ TEST(EstimatedRun, StationsOfAToolThatWhirlsAreTheHoles) {
   }
 }
 
+/// The hour with gyros skewed against the axis, of a prior of 2.5e-4 rad.
+constexpr double kSkewX = 2.1e-4, kSkewY = 0.9e-4;
+Flown FlySkewed(Hour hour) {
+  hour.stops = 2;
+  hour.errors.gyro_misalignment_sigma = 2.5e-4;
+  Simulation simulation = SimulationOf(hour, 0);
+  simulation.tool.errors.gyro_misalignment << kSkewX, kSkewY;
+  return Fly(simulation, testing::JobOf(hour));
+}
+
 // Gyros skewed against the axis seem to turn in a circle, whose middle is not half of its chord:
 // taken for it, the knot's forces lean, and accelerometers that might lean take over a quarter of
 // the skew, and more.
 TEST(EstimatedRun, SkewedGyrosDoNotLeanTheAccelerometers) {
-  testing::Hour hour;
+  Hour hour;
   hour.inclination_deg = 35;
   hour.minutes = 20;
-  hour.stops = 2;
   hour.noise.angle_random_walk = 1e-3 * units::kDegPerSqrtHour;
   hour.errors.accel_noise = 1e-5;
-  hour.errors.gyro_misalignment_sigma = 2.5e-4;
   hour.errors.accel_misalignment_sigma = 7e-5;
-  Simulation simulation = testing::SimulationOf(hour, 0);
-  simulation.tool.errors.gyro_misalignment << 2.1e-4, 0.9e-4;
-  const testing::Flown flown = testing::Fly(simulation, testing::JobOf(hour));
-  const SmoothedRun run = testing::EstimateOf(flown);
+  const SmoothedRun run = EstimateOf(FlySkewed(hour));
   ASSERT_TRUE(run.fit->converged);
   // Of two leans of which the run tells the difference alone, the one that is known better takes
   // its share of the variance: the accelerometers', of two angles, (7e-5)^2 / 2.
   const double before = 7e-5 * 7e-5 / 2, share = before / (before + 2.5e-4 * 2.5e-4);
-  for (const auto& [source, skew] : {std::pair{kMisalignmentX, 2.1e-4}, {kMisalignmentY, 0.9e-4}}) {
+  for (const auto& [source, skew] : {std::pair{kMisalignmentX, kSkewX}, {kMisalignmentY, kSkewY}}) {
     EXPECT_NEAR(run.fit->errors[source], skew * (1 - share), 5e-6);
   }
 }
@@ -348,21 +353,17 @@ TEST(EstimatedRun, SkewedGyrosDoNotLeanTheAccelerometers) {
 // knot's ends: a fifth of the skew at 120 deg a knot, which stations were off by to the side where
 // the tool's mark stood.
 TEST(EstimatedRun, StationsOfAFastRollDoNotLeanBySkewedGyros) {
-  testing::Hour hour;
+  Hour hour;
   hour.inclination_deg = 45;
   hour.undulation_deg = 0;
   hour.swing_deg = 0;
   hour.rpm = 20;
   hour.roll_amplitude_deg = 0;
   hour.minutes = 12;
-  hour.stops = 2;
   hour.noise.angle_random_walk = 1e-4 * units::kDegPerSqrtHour;
   hour.errors.accel_noise = 1e-4;
-  hour.errors.gyro_misalignment_sigma = 2.5e-4;
-  Simulation simulation = testing::SimulationOf(hour, 0);
-  simulation.tool.errors.gyro_misalignment << 2.1e-4, 0.9e-4;
-  const testing::Flown flown = testing::Fly(simulation, testing::JobOf(hour));
-  const SmoothedRun run = testing::EstimateOf(flown);
+  const Flown flown = FlySkewed(hour);
+  const SmoothedRun run = EstimateOf(flown);
   ASSERT_TRUE(run.fit->converged);
   double worst = 0;
   for (const StationState& state : run.stations) {
@@ -371,7 +372,7 @@ TEST(EstimatedRun, StationsOfAFastRollDoNotLeanBySkewedGyros) {
   }
   EXPECT_GT(run.stations.size(), 20u);
   std::printf("skewed gyros at 20 rpm: inclinations off by at most %.1e rad\n", worst);
-  EXPECT_LT(worst, 0.03 * 2.1e-4);
+  EXPECT_LT(worst, 0.005 * kSkewX);
 }
 
 }  // namespace

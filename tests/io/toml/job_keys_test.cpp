@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -14,6 +15,7 @@
 
 #include "wellgyro/io/toml/job_file.h"
 #include "wellgyro/io/toml/job_sections_internal.h"
+#include "wellgyro/survey/job_words.h"
 
 namespace wellgyro {
 namespace {
@@ -72,6 +74,25 @@ TEST(JobKeys, AreAllThatTheReaderAsksFor) {
   }
   EXPECT_THAT(asked, testing::ContainerEq(listed))
       << "survey/job_keys.cpp lists every key of a job, and no other";
+}
+
+// A choice is read as its word's place, and written by it.
+TEST(JobKeys, WordsStandInTheOrderOfTheirEnumerators) {
+  const auto at = [](const auto& words, auto value) {
+    return words.at(static_cast<std::size_t>(value));
+  };
+  using Projection = GridSpec::Projection;
+  EXPECT_EQ(at(words::kProjection, Projection::kTransverseMercator), "transverse_mercator");
+  EXPECT_EQ(at(words::kProjection, Projection::kPolarStereographic), "polar_stereographic");
+  EXPECT_EQ(at(words::kPole, true), "north");
+  EXPECT_EQ(at(words::kAlignment, AlignmentSpec::Method::kExternal), "external");
+  EXPECT_EQ(at(words::kAzimuthOf, AlignmentSpec::Of::kMark), "mark");
+  EXPECT_EQ(at(words::kOrder, AttitudeSpec::Order::kThird), "third");
+  EXPECT_EQ(at(words::kDepthKind, DepthKind::kDrillPipe), "drill_pipe");
+  EXPECT_EQ(at(words::kDepthKind, DepthKind::kOther), "other");
+  EXPECT_EQ(at(words::kRunVerdict, true), "misrun");
+  EXPECT_EQ(at(words::kEvent, Event::Kind::kDepthZero), "depth_zero");
+  EXPECT_EQ(at(words::kEvent, Event::Kind::kRemark), "remark");
 }
 
 // `value` of `key` alone in a job that has what else it needs; `line` gets its place.

@@ -128,6 +128,7 @@ class TomlTable {
   double NumberOf(const toml::node& node, std::string_view key, TomlRange range) const;
   std::string PathOf(std::string_view key) const;
   std::string Named(std::string_view key) const;
+
   TomlDocument* document_;
   const toml::table* table_;
   std::string path_;  ///< "depth.cable"; empty for the top
