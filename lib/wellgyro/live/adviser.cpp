@@ -3,8 +3,16 @@
 #include <algorithm>
 #include <exception>
 #include <utility>
+#include <vector>
+
+#include "wellgyro/live/observer.h"
 
 namespace wellgyro {
+namespace {
+
+constexpr std::int64_t kEveryUs = 2 * kSecondUs;  // two statuses: nobody acts on it sooner
+
+}  // namespace
 
 Adviser::Adviser(const AdviceCase& advised) : case_(advised), thread_([this] { Work(); }) {}
 
@@ -15,6 +23,16 @@ Adviser::~Adviser() {
     changed_.notify_all();
   }
   thread_.join();
+}
+
+std::optional<Advice> Adviser::Attend(const Surveyor& surveyor, std::int64_t now_us) {
+  std::optional<Advice> advice = Take();
+  if (now_us < next_us_) return advice;
+  const std::vector<std::int32_t> tools = surveyor.tools();
+  const std::optional<UtcTime> newest = surveyor.tally().newest;
+  if (tools.empty() || !newest || newest->ns <= 0) return advice;
+  if (Ask(NowOf(surveyor, tools.front()), *newest)) next_us_ = now_us + kEveryUs;
+  return advice;
 }
 
 bool Adviser::Ask(const RunNow& now, UtcTime newest) {

@@ -12,6 +12,7 @@
 #include "wellgyro/plan/live_advice.h"
 #include "wellgyro/record/advice.h"
 #include "wellgyro/survey/run/run_now.h"
+#include "wellgyro/survey/surveyor.h"
 
 namespace wellgyro {
 
@@ -24,17 +25,20 @@ class WELLGYRO_EXPORT Adviser {
   Adviser(const Adviser&) = delete;
   Adviser& operator=(const Adviser&) = delete;
 
-  /// Asks, where nothing is being thought about; false: it is. `newest`: begin of the newest
-  /// sample.
-  bool Ask(const RunNow& now, UtcTime newest);
-  /// What it has come to since it was taken last.
-  std::optional<Advice> Take();
+  /// To be called again and again: what it has come to since. Every two seconds, where nothing is
+  /// being thought about, it asks anew, of the tool that was heard of first by its number.
+  /// `now_us`: of a monotonic clock.
+  std::optional<Advice> Attend(const Surveyor& surveyor, std::int64_t now_us);
 
  private:
+  /// False: something is being thought about. `newest`: begin of the newest sample.
+  bool Ask(const RunNow& now, UtcTime newest);
+  std::optional<Advice> Take();
   void Work();
   Advice Answer() const;
 
   const AdviceCase case_;
+  std::int64_t next_us_ = 0;  ///< when it asks again
   std::mutex mutex_;
   std::condition_variable changed_;
   bool busy_ = false;  ///< what follows belongs to the thread

@@ -57,6 +57,10 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
   bool must_acknowledge() const { return must_acknowledge_; }  ///< a status is due at once
 
  private:
+  /// Stations and their pause: 2000 a second, 0.6 MB/s of some 290 bytes each.
+  static constexpr int kAtOnce = 20;
+  static constexpr std::int64_t kPauseUs = 10'000;
+  void Queue(const Station& station);
   template <class Record>
   bool SendBeside(const std::string& channel, const Record& record);
   void Publish(const std::string& channel, const std::vector<std::byte>& bytes);
@@ -70,11 +74,6 @@ class WELLGYRO_EXPORT Broadcast : public FaultBook {
   std::int64_t stations_ = 0, news_ = 0;
   std::int32_t last_command_id_ = 0;
   std::atomic<bool> must_acknowledge_ = false;
-  /// Stations and their pause: 2000 a second, 0.6 MB/s of some 290 bytes each.
-  static constexpr int kAtOnce = 20;
-  static constexpr std::int64_t kPauseUs = 10'000;
-  void Queue(const Station& station);
-
   std::map<StationKey, Station> told_;
   std::optional<Station> last_;
   std::deque<std::vector<std::byte>> outbox_;

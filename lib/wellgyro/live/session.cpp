@@ -20,8 +20,6 @@
 namespace wellgyro {
 namespace {
 
-// A FINISH that no sample reaches, because the tool is off, holds after so long without samples.
-constexpr std::int64_t kFinishPatienceUs = 5 * kSecondUs;
 // What is still used of a backlog when the session is stopped.
 constexpr std::int64_t kDrainUs = 200'000;
 // Within which the receiver's thread hands over what the system holds for it already.
@@ -112,12 +110,14 @@ LiveSession::Core::Core(LiveSetup the_setup, LiveObserver& observer, LiveBus the
                [this](auto channel, auto bytes, auto received_us, bool fresh) {
                  Use(channel, bytes, received_us, fresh);
                }),
-      keeper(setup.job.job, notices) {
+      keeper(setup.job.job, notices),
+      reporter({setup.clock, bus, surveyor, intake, keeper, broadcast, notices,
+                setup.job.job.alignment.min_still}) {
   if (setup.advise) adviser = std::make_unique<Adviser>(*setup.advise);
   intake.Watch(watch);
   intake.Tell([this](const OperationRecord& record, bool event) { TellOf(record, event); });
   watchdog = std::make_unique<Watchdog>(
-      setup.clock, [this] { SendLate(); },
+      setup.clock, [this] { reporter.Repeat(); },
       [this] {
         // What is known of the survey so far is in the files; nothing may be half-way then.
         keeper.End();
@@ -186,6 +186,7 @@ std::optional<Fault> LiveSession::Core::BeginRecord() {
                                 setup.clock, notices);
   if (!opened) return opened.fault();
   log = std::move(*opened);
+  reporter.Watch(*log);
   return std::nullopt;
 }
 
@@ -243,9 +244,7 @@ void LiveSession::Core::Use(std::string_view channel, std::span<const std::byte>
   const std::int64_t stations = broadcast.stations();
   intake.Take(channel, bytes);
   if (resuming) return;
-  const std::int64_t now = setup.clock.utc_us();
-  message_latency.Add(now - received_us);
-  if (broadcast.stations() > stations) station_latency.Add(now - received_us);
+  reporter.Used(setup.clock.utc_us() - received_us, broadcast.stations() > stations);
 }
 
 Result<bool> LiveSession::Core::Resume() {
@@ -269,11 +268,11 @@ LiveOutcome::Ended LiveSession::Core::Work() {
     }
     if (*stopped) return Ended::kInterrupted;
   }
-  next_status = Now();
+  reporter.Begin();
   for (;;) {
     Housekeeping();
     if (surveyor.finished()) return Ended::kFinished;
-    const std::int64_t wait = std::max<std::int64_t>(next_status - Now(), 0) / 1000 + 1;
+    const std::int64_t wait = std::max<std::int64_t>(reporter.next_us() - Now(), 0) / 1000 + 1;
     const std::int64_t most = broadcast.waiting() ? kPumpMs : kIdleMs;
     const auto woken = bus.Wait(static_cast<int>(std::min(wait, most)), kAtOnce);
     if (!woken) {
@@ -301,24 +300,16 @@ bool LiveSession::Core::DrainStopped() {
 void LiveSession::Core::Housekeeping() {
   const std::int64_t now = Now();
   watchdog->Alive();
-  if (FinishIsDue(now)) {
+  if (finish.IsOver(intake, now)) {
     guard.Flush();
     surveyor.Finish();
   }
   if (log) log->Attend();
   broadcast.Pump();
-  if (now >= next_status || broadcast.must_acknowledge()) SendStatus(now);
+  if (now >= reporter.next_us() || broadcast.must_acknowledge()) reporter.Report(now);
   if (now >= next_keep) KeepFiles(now);
-  if (adviser) Advise(now);
-}
-
-bool LiveSession::Core::FinishIsDue(std::int64_t now) {
-  const std::int64_t messages = intake.sample_messages();
-  if (messages != sample_messages || last_sample_us == 0) {
-    sample_messages = messages;
-    last_sample_us = now;
-  }
-  return intake.operations().finish_obeyed() && now - last_sample_us > kFinishPatienceUs;
+  if (!adviser) return;
+  if (const auto advice = adviser->Attend(surveyor, now)) broadcast.Send(*advice);
 }
 
 }  // namespace wellgyro

@@ -1,26 +1,23 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "wellgyro/bus/file_lock.h"
-#include "wellgyro/bus/latency.h"
 #include "wellgyro/bus/loss_watch.h"
 #include "wellgyro/bus/stream_guard.h"
 #include "wellgyro/live/adviser.h"
 #include "wellgyro/live/broadcast.h"
 #include "wellgyro/live/catch_up.h"
+#include "wellgyro/live/finish_wait.h"
 #include "wellgyro/live/intake.h"
 #include "wellgyro/live/log_keeper.h"
 #include "wellgyro/live/notices.h"
+#include "wellgyro/live/reporter.h"
 #include "wellgyro/live/result_keeper.h"
 #include "wellgyro/live/session.h"
 #include "wellgyro/live/watchdog.h"
@@ -63,20 +60,6 @@ struct LiveSession::Core {
   bool DrainStopped();
   /// What is due besides messages: status, files, advice, the log's disk.
   void Housekeeping();
-  /// FINISH was obeyed and kFinishPatienceUs went by without samples, as of a tool that is off.
-  bool FinishIsDue(std::int64_t now);
-  /// Once a second, with a glance; without one where a command is to be acknowledged.
-  void SendStatus(std::int64_t now);
-  Status StatusNow(bool on_time);
-  /// Degraded, or at fault where recording or files cannot be written; why, in its text.
-  void Worsen(Status& status) const;
-  /// From the watchdog: the last status again, busy, while the survey is adjusted.
-  void SendLate();
-  Glance GlanceNow() const;
-  /// Asks the adviser, and publishes what it has come to.
-  void Advise(std::int64_t now);
-  /// Which check's verdict changed last, for the glance.
-  void NoteChecks(const std::vector<ToolResult>& tools);
   /// Sends stations that still wait, before the end.
   void EmptyOutbox();
   /// The last files; `patient`: tries a full disk again until Stop.
@@ -99,22 +82,15 @@ struct LiveSession::Core {
   StreamGuard guard;
   CatchUp catch_up;
   ResultKeeper keeper;
+  Reporter reporter;
+  FinishWait finish;
   std::optional<FileLock> folder;
   std::unique_ptr<LogKeeper> log;
   bool resuming = false;
-  Latency message_latency, station_latency;
   std::unique_ptr<Adviser> adviser;  ///< null: nobody asked
   bool ran = false;                  ///< Run was called
-  std::int64_t next_status = 0, next_keep = 0, next_advice = 0;
-  std::int64_t kept_news = 0;
-  std::int64_t sample_messages = 0, last_sample_us = 0;
-  std::int64_t kernel_drops_said = 0;
+  std::int64_t next_keep = 0, kept_news = 0;
   std::int64_t orders_from_elsewhere = 0;
-  std::map<std::string, Verdict> verdicts;  ///< of the last files, by check
-  std::string turned;
-  std::mutex status_mutex;
-  Status last_status;               ///< for the watchdog to say again, and ...
-  std::int64_t last_status_us = 0;  ///< ... when it was said
   std::unique_ptr<Watchdog> watchdog;
 };
 
