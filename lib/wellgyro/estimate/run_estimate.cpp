@@ -4,17 +4,13 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <memory>
-#include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "wellgyro/estimate/backward_pass.h"
+#include "wellgyro/estimate/choice.h"
 #include "wellgyro/estimate/end_of_run.h"
 #include "wellgyro/estimate/hidden_roll.h"
 #include "wellgyro/estimate/rivals.h"
-#include "wellgyro/estimate/swing.h"
-#include "wellgyro/math/linear_algebra.h"
 #include "wellgyro/record/decides.h"
 #include "wellgyro/record/unknown_angle.h"
 
@@ -24,106 +20,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kSolveIterations = 40;  // at most, before the scales of the roll are sought
 // A sum of squares this many sigmas above its freedom is not chance, P(x > 4) = 3.2e-5: one run in
 // 30 000.
 constexpr double kTooLarge = 4;
-// Solvers that stand within a sigma of one minimum, over all unknowns together, have an evidence,
-// -2 ln of a density, within 1 of its.
-constexpr double kSameEvidence = 1;
 // Each takes the noise to what the residuals about the last solution say; the third moves it by
 // less than a per cent.
 constexpr int kNoiseRounds = 3;
-// Each is begun from a better one: of random wells that fail without, one solution was bettered a
-// second time, by 48, and none a third.
-constexpr int kAboutMost = 3;
-
-/// Covariance of the sources' constant errors, from the border's; zero for those it does not have.
-ErrorMatrix OfSources(const Layout& layout, const BorderMatrix& border) {
-  ErrorMatrix cov = ErrorMatrix::Zero();
-  for (int i = 0; i < kErrorSources; ++i) {
-    for (int j = 0; j < kErrorSources; ++j) {
-      const int row = layout.source[static_cast<std::size_t>(i)];
-      const int column = layout.source[static_cast<std::size_t>(j)];
-      if (row != kAbsent && column != kAbsent) cov(i, j) = border(row, column);
-    }
-  }
-  return cov;
-}
-
-/// Backward pass: the covariance of every node, the cross-covariances of the marked ones, and the
-/// freedom that is left to each kind of residual. Of a part of a run the first marked node is
-/// linked to the last one of the part before.
-class Sweep {
- public:
-  Sweep(RunSolver& solver, std::span<const std::size_t> marked, RunEstimate& result)
-      : solver_(solver),
-        columns_(LinkedColumns(solver.layout())),
-        marked_(marked),
-        left_(marked.size()),
-        result_(result) {}
-
-  void Run() {
-    const Elimination& e = solver_.elimination();
-    const Layout& layout = solver_.layout();
-    EdgeMatrix next = e.LastCovariance();
-    const std::size_t n = solver_.knots().size();
-    result_.cov_phi_T.resize(n + 1);
-    result_.marked.resize(marked_.size());
-    TakeErrors(next);
-    At(n, next);
-    solver_.BeginMeasure();
-    for (std::size_t k = n; k-- > 0;) {
-      const BehindMatrix gain = e.Gain(k);
-      BehindMatrix with_next;
-      const EdgeMatrix here = e.CovarianceBefore(k, gain, next, with_next);
-      solver_.Measure(k, here, next, with_next);
-      if (link_.size() > 0) link_.topRows(layout.node) = (gain * link_).eval();
-      At(k, here);
-      next = here;
-    }
-    const RunState* before = solver_.before();
-    if (before != nullptr && before->link.size() > 0 && link_.size() > 0) {
-      result_.marked.front().cov_with_previous = before->link * link_;
-    }
-    result_.report.sums = solver_.sums();
-  }
-
- private:
-  void At(std::size_t node, const EdgeMatrix& cov) {
-    result_.cov_phi_T[node] = cov.topLeftCorner<3, 3>();
-    while (left_ > 0 && marked_[left_ - 1] == node) {
-      --left_;
-      LinkedErrors& mark = result_.marked[left_];
-      mark.node = node;
-      mark.cov = cov(columns_, columns_);
-      if (link_.size() > 0) {
-        result_.marked[left_ + 1].cov_with_previous = link_(columns_, Eigen::all);
-      }
-      link_ = cov(Eigen::all, columns_);
-    }
-  }
-
-  void TakeErrors(const EdgeMatrix& cov) {
-    const Layout& layout = solver_.layout();
-    for (int i = 0; i < kErrorSources; ++i) {
-      const int at = layout.source[static_cast<std::size_t>(i)];
-      if (at == kAbsent) continue;
-      result_.errors[i] = solver_.border()[at];
-      result_.sigma_errors[i] = std::sqrt(cov(layout.node + at, layout.node + at));
-    }
-    const BorderMatrix posterior = cov.bottomRightCorner(layout.border, layout.border);
-    result_.cov_errors = OfSources(layout, posterior);
-    result_.cov_prior = OfSources(layout, InverseOfSymmetric(layout.information));
-  }
-
-  RunSolver& solver_;
-  std::vector<int> columns_;
-  std::span<const std::size_t> marked_;
-  std::size_t left_;
-  RunEstimate& result_;
-  Eigen::MatrixXd link_;  ///< E[(node; border) x'] of the marked node behind
-};
 
 /// sqrt(squares / freedom) of residuals of these kinds, the factor by which their noise is larger
 /// than stated; 1 where the squares are chance.
@@ -148,7 +50,7 @@ void FitNoise(RunSolver& solver, std::span<const std::size_t> marked, RunEstimat
     result.gyro_noise *= gyro;
     result.accel_noise *= accel;
     result.solved = solver.SolveWithNoise(gyro, accel);
-    if (result.solved) Sweep(solver, marked, result).Run();
+    if (result.solved) PassBack(solver, marked, result);
   }
   result.report.sums = stated;
 }
@@ -207,138 +109,6 @@ std::vector<NodeGuess> GuessesOf(const EstimateSetup& setup, std::span<const Run
   return guesses;
 }
 
-/// Where a solver stood before it sought the scales of the roll.
-struct Approached {
-  std::optional<double> swing;  ///< of the setup [rad/s]
-  RollBegin begin;
-  double evidence = 0;
-  NodeGuess nodes;
-};
-
-struct Choice {
-  std::unique_ptr<RunSolver> solver;  ///< of the solution of greatest evidence; null: none
-  SolveReport report;
-  std::vector<Solution> rivals;      ///< others that come near it
-  double least_evidence = HUGE_VAL;  ///< of all guesses, those that lead to no solution too
-  std::vector<Approached> approached;
-};
-
-/// What follows from where the solver stands has been tried: as the same model it was there before,
-/// to a sigma over all unknowns together. Else it is noted.
-bool WasThere(const RunSolver& solver, const RollBegin& begin, Choice& choice) {
-  if (!solver.IsNear()) return false;
-  Approached now{solver.setup().swing, begin, solver.Evidence(), solver.nodes()};
-  const bool there = std::ranges::any_of(choice.approached, [&](const Approached& before) {
-    return before.swing == now.swing && before.begin == now.begin &&
-           std::abs(before.evidence - now.evidence) < kSameEvidence &&
-           SameSolution(before.nodes, now.nodes);
-  });
-  if (!there) choice.approached.push_back(std::move(now));
-  return there;
-}
-
-/// Keeps another solution, once, where it comes near the chosen one.
-void AddRival(Solution other, Choice& choice) {
-  if (!choice.solver) return;
-  AddRival(std::move(other), choice.report.evidence, choice.solver->nodes(), choice.rivals);
-}
-
-/// A run, and what it is solved as.
-struct Problem {
-  const EstimateSetup& setup;
-  std::span<const RunKnot> knots;
-  const RunState* before;
-  std::vector<RollBegin> begins;  ///< of a roll rate that walks
-  bool may_swing = false;
-  bool hides_roll = false;
-  std::optional<double> swing;  ///< of the roll where gravity shows it [rad/s]
-};
-
-Problem ProblemOf(const EstimateSetup& setup, std::span<const RunKnot> knots,
-                  const RunState* before) {
-  Problem p{.setup = setup, .knots = knots, .before = before, .begins = RollBeginsOf(knots)};
-  p.may_swing = setup.may_swing && !setup.third_axis;
-  p.hides_roll = AnyRollIsHidden(knots);
-  if (p.may_swing) p.swing = SwingOf(knots);
-  return p;
-}
-
-EstimateSetup SetupWith(const EstimateSetup& setup, std::optional<double> swing) {
-  EstimateSetup with = setup;
-  with.swing = swing;
-  return with;
-}
-
-/// Solves from one guess, with a swing of this frequency or none, unless it leads where one before
-/// it did; keeps the solution where it betters those before. Returns where it ended.
-NodeGuess SolveFrom(const NodeGuess& guess, const Problem& p, std::optional<double> swing,
-                    const RollBegin& begin, Solution& solution, Choice& choice) {
-  auto solver = std::make_unique<RunSolver>(SetupWith(p.setup, swing), p.knots, p.before);
-  solver->nodes() = guess;
-  const double best = choice.solver ? choice.report.evidence : HUGE_VAL;
-  solver->Approach(kSolveIterations, begin);
-  if (WasThere(*solver, begin, choice)) return solver->nodes();
-  const SolveReport report = solver->Settle(best + kDecides);
-  NodeGuess nodes = solver->nodes();
-  choice.least_evidence = std::min(choice.least_evidence, report.evidence);
-  if (!report.converged || !(report.evidence < solution.evidence)) return nodes;
-  solution = {report.evidence, nodes, solver->border(), swing, begin};
-  if (choice.solver && !(report.evidence < choice.report.evidence)) return nodes;
-  choice.report = report;
-  choice.solver = std::move(solver);
-  return nodes;
-}
-
-/// Solves from where a walk led, as that and the swing that it shows, where only it shows one.
-void SolveAsHiddenSwing(const NodeGuess& walk, const Problem& p, Solution& solution,
-                        Choice& choice) {
-  if (p.swing || !p.may_swing || !p.hides_roll) return;
-  const std::optional<double> swing = SwingOf(p.knots, walk);
-  if (swing) SolveFrom(walk, p, swing, {}, solution, choice);
-}
-
-/// Solves from one guess with the roll rate as the setup has it, a random walk, and, where it
-/// swings, as that and a swing, whose frequency gravity shows or else, where the roll is hidden,
-/// the walk's solution.
-void SolveFrom(const NodeGuess& guess, const Problem& p, Solution& solution, Choice& choice) {
-  if (p.swing) SolveFrom(guess, p, p.swing, {}, solution, choice);
-  NodeGuess walk;
-  for (const RollBegin& begin : p.begins) {
-    const double evidence = solution.evidence;
-    NodeGuess nodes = SolveFrom(guess, p, p.setup.swing, begin, solution, choice);
-    if (walk.empty() || solution.evidence < evidence) walk = std::move(nodes);
-  }
-  SolveAsHiddenSwing(walk, p, solution, choice);
-}
-
-/// Solves again from nearby a solution, as the model that fits best there, as long as that is
-/// better, where it may be a local minimum.
-void SolveAbout(const Problem& p, Solution& solution, Choice& choice) {
-  for (int i = 0; i < kAboutMost && p.hides_roll && !solution.nodes.empty(); ++i) {
-    const double evidence = solution.evidence;
-    const std::optional<double> swing = solution.swing;
-    const RollBegin begin = solution.begin;
-    const NodeGuess about =
-        RollAbout(SetupWith(p.setup, swing), p.knots, p.before, solution.nodes, solution.border);
-    const NodeGuess nodes = SolveFrom(about, p, swing, begin, solution, choice);
-    SolveAsHiddenSwing(nodes, p, solution, choice);
-    if (!(solution.evidence < evidence - kDecides)) return;
-  }
-}
-
-Choice Choose(const EstimateSetup& setup, std::span<const RunKnot> knots,
-              std::span<const NodeGuess> guesses, const RunState* before) {
-  const Problem problem = ProblemOf(setup, knots, before);
-  std::vector<Solution> solutions(guesses.size());
-  Choice choice;
-  for (std::size_t i = 0; i < guesses.size(); ++i) {
-    SolveFrom(guesses[i], problem, solutions[i], choice);
-    SolveAbout(problem, solutions[i], choice);
-  }
-  for (Solution& s : solutions) AddRival(std::move(s), choice);
-  return choice;
-}
-
 /// What the errors of node k would be if the rival were right, in [node; border].
 EdgeVector Towards(const Solution& rival, const RunSolver& best, std::size_t k) {
   const Layout& layout = best.layout();
@@ -393,7 +163,7 @@ void Take(const Choice& choice, std::span<const std::size_t> marked, RunEstimate
   if (!choice.solver) return;
   result.solved = true;
   result.report = choice.report;
-  Sweep(*choice.solver, marked, result).Run();
+  PassBack(*choice.solver, marked, result);
 }
 
 RunState EndOf(const RunSolver& solved, std::span<const std::size_t> marked) {
@@ -441,23 +211,6 @@ bool GyrosMisfit(const RunEstimate& run) {
   return !run.solved || Excess(run.report.sums, {RowKind::kTurn, RowKind::kStill}) > 1;
 }
 
-/// Takes the solution of other guesses where its evidence is better; the worse of the two may
-/// remain a rival. False: it is not better.
-bool TakeIfBetter(Choice other, std::span<const std::size_t> marked, Choice& choice,
-                  RunEstimate& result) {
-  if (!other.solver) return false;
-  const bool better = !choice.solver || other.report.evidence < choice.report.evidence;
-  if (better) std::swap(choice, other);
-  for (Solution& rival : other.rivals) AddRival(std::move(rival), choice);
-  if (other.solver) {
-    AddRival({other.report.evidence, other.solver->nodes(), other.solver->border(),
-              other.solver->setup().swing},
-             choice);
-  }
-  if (better) Take(choice, marked, result);
-  return better;
-}
-
 }  // namespace
 
 RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> knots,
@@ -471,8 +224,9 @@ RunEstimate EstimateRun(const EstimateSetup& setup, std::span<const RunKnot> kno
     const std::array otherwise{starts.otherwise()};
     Choice other = Choose(setup, knots, otherwise, before);
     const double least = other.least_evidence;
-    if (!TakeIfBetter(std::move(other), marked, choice, result) &&
-        least < result.report.evidence - kDecides) {
+    if (Join(std::move(other), choice)) {
+      Take(choice, marked, result);
+    } else if (least < result.report.evidence - kDecides) {
       return {};  // something fits better that is no solution: nothing is known
     }
   }
