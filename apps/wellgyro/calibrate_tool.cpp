@@ -16,7 +16,6 @@
 #include "wellgyro/base/angle.h"
 #include "wellgyro/base/units.h"
 #include "wellgyro/calibration/error_sources.h"
-#include "wellgyro/calibration/prior.h"
 #include "wellgyro/calibration/uncertainty_budget.h"
 #include "wellgyro/fit/bench_sigmas.h"
 #include "wellgyro/fit/tool_fit.h"
@@ -33,6 +32,7 @@
 #include "distinct.h"
 #include "on_call.h"
 #include "report.h"
+#include "tool_prior.h"
 
 namespace wellgyro::apps {
 namespace {
@@ -58,98 +58,6 @@ Result<std::vector<BenchTable>> ReadInputs(const ToolFitOptions& o, CalibrationF
   return tables;
 }
 
-// Readings of this bench that the prior was made of too.
-std::optional<Fault> Shared(const ToolFitOptions& o, const ToolCalibration& prior,
-                            const std::vector<InputFile>& inputs) {
-  for (const InputFile& input : inputs) {
-    if (input.role != "data" || !RestsOn(prior, input.sha256)) continue;
-    return Fault{.code = FaultCode::kConflict,
-                 .text = fmt::format("it rests on the readings of {} too, which would count "
-                                     "twice: leave --prior out, or read the bench anew",
-                                     input.name),
-                 .source = o.prior};
-  }
-  return std::nullopt;
-}
-
-std::optional<Fault> OfAnother(const ToolFitOptions& o, const ToolCalibration& prior,
-                               const ToolCalibration& tool) {
-  const std::string &theirs = prior.asset_serial, &ours = tool.asset_serial;
-  if (theirs.empty() || ours.empty() || theirs == ours) return std::nullopt;
-  return Fault{.code = FaultCode::kConflict,
-               .text = fmt::format("it is of tool {}, and this bench of {}: give the file of the "
-                                   "same tool, or mend --asset-serial",
-                                   theirs, ours),
-               .source = o.prior};
-}
-
-// What was known before must not contradict the bench more than once in a thousand, nor agree with
-// it as only the same readings do.
-std::optional<Fault> Unlikely(const ToolFitOptions& o, const JoinedTool& joined) {
-  constexpr double kChance = 1e-3;
-  if (joined.probability < kChance) {
-    return Fault{.code = FaultCode::kConflict,
-                 .text = fmt::format("the bench contradicts it: chi-square {:.1f} of {}, as large "
-                                     "by chance {:.1g}; the tool has changed, calibrate it "
-                                     "without --prior, see calibrate history",
-                                     joined.chi_square, joined.dof, joined.probability),
-                 .source = o.prior};
-  }
-  // Chance that independent readings differ as little. Of 16 sound benches one reached 3e-4.
-  constexpr double kSame = 1e-5;
-  if (joined.likeness >= kSame) return std::nullopt;
-  return Fault{.code = FaultCode::kConflict,
-               .text = fmt::format("it agrees with the bench better than other readings can: "
-                                   "biases, sensitivities and force terms differ as little by "
-                                   "chance {:.1g}; both rest on the same readings, which would "
-                                   "count twice: leave --prior out",
-                                   joined.likeness),
-               .source = o.prior};
-}
-
-// A tool, and the covariance of the members that the bench found by its sources.
-struct Calibrated {
-  ToolCalibration tool;
-  std::vector<std::string> members;
-  CovarianceParts by_source;
-};
-
-Calibrated Joined(Calibrated before, JoinedTool joined) {
-  before.tool = std::move(joined.tool);
-  if (joined.members != before.members) return before;
-  before.by_source = Propagated(before.by_source, joined.by_bench);
-  before.by_source.Add("prior", std::move(joined.cov_by_prior));
-  return before;
-}
-
-// The prior joins the inputs of `file`, whose result is of the bench alone.
-Result<Calibrated> WithPrior(const ToolFitOptions& o, Calibrated tool, CalibrationFile& file) {
-  if (o.prior.empty()) return tool;
-  const Result<std::string> text = ReadTextFile(o.prior);
-  if (!text) return text.fault();
-  const auto prior = ParseTool(*text, o.prior);
-  if (!prior) return prior.fault();
-  if (auto fault = OfAnother(o, *prior, tool.tool)) return *std::move(fault);
-  if (auto fault = Shared(o, *prior, file.inputs)) return *std::move(fault);
-  JoinedTool joined = JoinPrior(tool.tool, *prior);
-  if (auto fault = Unlikely(o, joined)) return *std::move(fault);
-  fmt::print("prior: chi-square {:.1f} of {}, as large by chance {:.2g}\n", joined.chi_square,
-             joined.dof, joined.probability);
-  constexpr double kDoubtful = 1e-3;
-  if (joined.likeness < kDoubtful) {
-    Complain(fmt::format(
-        "{} agrees with the bench as well as other readings do by chance {:.1g}: make sure that "
-        "it does not rest on the same ones",
-        o.prior, joined.likeness));
-  }
-  file.inputs.push_back({"prior", o.prior, o.prior, Sha256Hex(*text)});
-  file.report.remarks.push_back(fmt::format(
-      "this result is of the bench's readings alone; the tool file, and the errors left in "
-      "calibrated samples, hold {} as well",
-      o.prior));
-  return Joined(std::move(tool), std::move(joined));
-}
-
 Result<Calibrated> ToolOf(const ToolFitOptions& o, const ToolFit& fit, CalibrationFile& file) {
   ToolCalibration tool;
   if (!o.bench.tool.empty() && std::filesystem::exists(o.bench.tool)) {
@@ -160,7 +68,9 @@ Result<Calibrated> ToolOf(const ToolFitOptions& o, const ToolFit& fit, Calibrati
   tool = Updated(std::move(tool), fit, o.bench.update);
   tool.rests_on.clear();
   for (const InputFile& input : file.inputs) tool.rests_on.push_back(input.sha256);
-  return WithPrior(o, {std::move(tool), fit.members.names, fit.members_by_source}, file);
+  Calibrated found{std::move(tool), fit.members.names, fit.members_by_source};
+  if (o.prior.empty()) return found;
+  return WithPrior(o.prior, std::move(found), file);
 }
 
 // Errors left in samples, in the units that people use.
