@@ -1,7 +1,10 @@
 #include "crossing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -23,16 +26,58 @@ constexpr Complex kI{0, 1};
 Complex Across(const Vector3d& v) { return {v.x(), v.y()}; }
 Eigen::Vector2d Pair(Complex z) { return {z.real(), z.imag()}; }
 
+constexpr double kPhaseSeconds = 2;  // between the values of a phase that wanders
+
+/// Angle and rate, of full speed 1, of a roll that begins at rest and takes `up` to its speed.
+Crossing::Spin FromRest(double t, double up) {
+  return t < up ? Crossing::Spin{t * t / (2 * up), t / up} : Crossing::Spin{t - up / 2, 1};
+}
+
+/// The same of a roll that is on for `pause` and off for `pause`, begun and ended within 3 s.
+Crossing::Spin ByTurns(double t, double pause) {
+  constexpr double up = 3;
+  const double whole = std::floor(t / (2 * pause)), in = t - 2 * pause * whole;
+  const Crossing::Spin on = FromRest(in, up);
+  const Crossing::Spin off = in < pause ? Crossing::Spin{} : FromRest(in - pause, up);
+  return {whole * pause + on.angle - off.angle, on.rate - off.rate};
+}
+
+/// Through values every two seconds a cubic in each with the slope of its neighbours (Catmull and
+/// Rom 1974).
+Crossing::Spin PhaseAt(const std::vector<double>& p, double t) {
+  const double s = t / kPhaseSeconds;
+  const auto i = std::min(static_cast<std::size_t>(s), p.size() - 3);
+  const double u = s - static_cast<double>(i), before = i > 0 ? p[i - 1] : p[i];
+  const double m0 = (p[i + 1] - before) / 2, m1 = (p[i + 2] - p[i]) / 2, d = p[i + 1] - p[i];
+  const double c2 = 3 * d - 2 * m0 - m1, c3 = m0 + m1 - 2 * d;
+  return {p[i] + u * (m0 + u * (c2 + u * c3)), (m0 + u * (2 * c2 + 3 * u * c3)) / kPhaseSeconds};
+}
+
 }  // namespace
+
+void Crossing::DrawPhase(std::uint64_t seed) {
+  Random random(seed);
+  phase.assign(1, 0);
+  while ((static_cast<double>(phase.size()) - 3) * kPhaseSeconds < seconds) {
+    phase.push_back(phase.back() + roll.phase_walk * std::sqrt(kPhaseSeconds) * random.Normal());
+  }
+}
+
+Crossing::Spin Crossing::SpinAt(double t) const {
+  const double full = roll.rpm * 2 * M_PI / 60, omega = 2 * M_PI / roll.swing_period;
+  const double a = roll.swing_deg * kDeg;
+  const Spin by_turns = roll.pause > 0 ? ByTurns(t, roll.pause) : FromRest(t, 30);
+  const Spin more = phase.empty() ? Spin{} : PhaseAt(phase, t);
+  const double at = omega * t + more.angle;
+  return {full * by_turns.angle + a * std::sin(at),
+          full * by_turns.rate + a * (omega + more.rate) * std::cos(at)};
+}
 
 Crossing::Motion Crossing::At(double t) const {
   const Matrix3d C = RotationZ(0.6) * RotationX(-closest_deg * kDeg);
   const Vector3d y = C.col(1);
-  const double rate = 12 * kDeg / seconds, full = rpm * 2 * M_PI / 60, up = 30;
-  const double omega = 2 * M_PI / swing_period, a = swing_deg * kDeg;
-  const double spin =
-      (t < up ? full * t * t / (2 * up) : full * (t - up / 2)) + a * std::sin(omega * t);
-  const double spin_rate = (t < up ? full * t / up : full) + a * omega * std::cos(omega * t);
+  const double rate = 12 * kDeg / seconds;
+  const auto [spin, spin_rate] = SpinAt(t);
   Motion m;
   m.R_LT = Exp(rate * (t - seconds / 2) * y) * C * RotationZ(spin);
   const Vector3d tangent = m.R_LT.col(2), v = speed * tangent;

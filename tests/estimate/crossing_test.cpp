@@ -102,24 +102,41 @@ void ExpectInBand(double sum, double freedom, const std::string& what) {
 }
 
 struct Cell {
-  double rpm, closest_deg, swing_deg;
+  double rpm, closest_deg;
 };
 
-void PrintTo(const Cell& c, std::ostream* out) {
-  *out << c.rpm << " rpm past " << c.closest_deg << " deg, swinging " << c.swing_deg << " deg";
+/// One way to roll past vertical: what of CrossingRoll is no steady roll.
+struct Way {
+  double pause = 0, swing_deg = 0, swing_period = 23, phase_walk = 0;
+};
+
+struct CellByWay {
+  Cell cell;
+  Way way;
+};
+
+void PrintTo(const CellByWay& c, std::ostream* out) {
+  *out << c.cell.rpm << " rpm past " << c.cell.closest_deg << " deg, swinging " << c.way.swing_deg
+       << " deg in " << c.way.swing_period << " s, phase " << c.way.phase_walk << ", pause "
+       << c.way.pause << " s";
 }
 
-class PastVertical : public testing::TestWithParam<Cell> {};
+Crossing CrossingOf(const CellByWay& c, std::uint64_t seed) {
+  Crossing crossing;
+  crossing.closest_deg = c.cell.closest_deg;
+  crossing.roll = {c.cell.rpm, c.way.pause, c.way.swing_deg, c.way.swing_period, c.way.phase_walk};
+  if (c.way.phase_walk > 0) crossing.DrawPhase(seed + 1'000'000);
+  return crossing;
+}
+
+class PastVertical : public testing::TestWithParam<CellByWay> {};
 
 TEST_P(PastVertical, ErrorsAreThoseOfTheCovariance) {
-  Crossing crossing;
-  crossing.rpm = GetParam().rpm;
-  crossing.closest_deg = GetParam().closest_deg;
-  crossing.swing_deg = GetParam().swing_deg;
   constexpr int kSeeds = WELLGYRO_CROSSING_SEEDS;
   Score sum;
   for (int i = 0; i < kSeeds; ++i) {
-    const Score score = ScoreOf(crossing, 5000 + static_cast<std::uint64_t>(i));
+    const std::uint64_t seed = 5000 + static_cast<std::uint64_t>(i);
+    const Score score = ScoreOf(CrossingOf(GetParam(), seed), seed);
     sum.azimuth += score.azimuth;
     sum.tangent += score.tangent;
     sum.toolface += score.toolface;
@@ -134,14 +151,24 @@ TEST_P(PastVertical, ErrorsAreThoseOfTheCovariance) {
   ExpectInBand(sum.toolface, kSeeds, "toolface");
 }
 
-INSTANTIATE_TEST_SUITE_P(Steady, PastVertical,
-                         testing::Values(Cell{0, .05, 0}, Cell{0, .2, 0}, Cell{0, .5, 0},
-                                         Cell{0, 2, 0}, Cell{.3, .5, 0}, Cell{3, .05, 0},
-                                         Cell{3, .2, 0}, Cell{3, .5, 0}, Cell{3, 2, 0}));
-INSTANTIATE_TEST_SUITE_P(Swinging, PastVertical,
-                         testing::Values(Cell{0, .05, 25}, Cell{0, .2, 25}, Cell{0, .5, 25},
-                                         Cell{0, 2, 25}, Cell{.3, .05, 25}, Cell{.3, .5, 25},
-                                         Cell{3, .2, 25}, Cell{3, .5, 25}, Cell{3, 2, 25}));
+auto Cells(const std::vector<Cell>& cells, const Way& way) {
+  std::vector<CellByWay> all;
+  for (const Cell& cell : cells) all.push_back({cell, way});
+  return testing::ValuesIn(all);
+}
+
+const std::vector<Cell> kTen{{0, .05}, {0, .2},  {0, .5}, {0, 2},  {.3, .05},
+                             {.3, .5}, {3, .05}, {3, .2}, {3, .5}, {3, 2}};
+const std::vector<Cell> kRolling(kTen.begin() + 4, kTen.end());
+const std::vector<Cell> kSliding(kTen.begin(), kTen.begin() + 3);
+
+INSTANTIATE_TEST_SUITE_P(Steady, PastVertical, Cells(kTen, {}));
+INSTANTIATE_TEST_SUITE_P(Swinging, PastVertical, Cells(kTen, {.swing_deg = 25}));
+INSTANTIATE_TEST_SUITE_P(SwingingFast, PastVertical,
+                         Cells(kTen, {.swing_deg = 5, .swing_period = 7}));
+INSTANTIATE_TEST_SUITE_P(ByTurns, PastVertical, Cells(kRolling, {.pause = 60}));
+INSTANTIATE_TEST_SUITE_P(Wandering, PastVertical,
+                         Cells(kSliding, {.swing_deg = 25, .phase_walk = 0.05}));
 
 }  // namespace
 }  // namespace wellgyro::test
