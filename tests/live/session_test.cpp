@@ -1,6 +1,7 @@
 // A live session as a vendor's program runs it: over multicast, in this process.
 #include "wellgyro/live/session.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -40,6 +41,7 @@ struct Observer : LiveObserver {
   void OnStation(const Station&) override { ++stations; }
   void OnStatus(const Status& status) override {
     ++statuses;
+    oldest = std::max(oldest.load(), status.data_age);
     busy += status.text.starts_with("busy") ? 1 : 0;
   }
   void OnStuck(const std::optional<RunVerdict>& what) override {
@@ -49,6 +51,7 @@ struct Observer : LiveObserver {
   std::optional<RunVerdict> kept;
   std::vector<std::string> said;
   std::atomic<int> stations = 0, statuses = 0, busy = 0;
+  std::atomic<double> oldest = 0;  ///< newest sample that a status told of [s]
   std::atomic<std::int64_t> stuck_us = 0;
 };
 
@@ -163,6 +166,18 @@ TEST_F(Session, AFolderHasOneSession) {
   const auto second = LiveSession::Open(setup_, other);
   ASSERT_FALSE(second);
   EXPECT_NE(second.fault().text.find("another wellgyro"), std::string::npos);
+}
+
+// As when it reads a long log again.
+TEST_F(Session, BusyBeforeItsFirstStatusItTellsOfNoOldData) {
+  auto session = LiveSession::Open(setup_, observer_);
+  ASSERT_TRUE(session) << session.fault().text;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (observer_.busy == 0 && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  EXPECT_GT(observer_.busy, 0) << "the rig was not told that it lives";
+  EXPECT_EQ(observer_.oldest, 0) << "s old, though nothing has come";
 }
 
 TEST_F(Session, WhileItAdjustsItsStatusGoesOnAndAStopIsHeeded) {

@@ -29,7 +29,7 @@ struct ToolFitSetup {
   /// Of the tool on the rate table, each direction [rad].
   double sigma_axis = 60 * units::kArcsec;
   /// Of the scale of a rate table's rates, common to all its rows. Tables for inertial sensors are
-  /// told from others by a rate that is within 0.05 % (Missile Technology Control Regime, annex,
+  /// told from others by a rate stable within 0.05 % (Missile Technology Control Regime, annex,
   /// 9.B.2.c), of a uniform distribution between these bounds (JCGM 100:2008, 4.3.7). A latitude
   /// 0.01 deg off is as much at 60 deg: that a table checks it finer, its scale must be known
   /// finer.

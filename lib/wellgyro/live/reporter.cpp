@@ -108,7 +108,8 @@ void Reporter::Repeat() {
   {
     const std::lock_guard lock(mutex_);
     status = last_;
-    status.data_age += static_cast<double>(session_.clock.monotonic_us() - last_us_) * 1e-6;
+    const std::int64_t now = session_.clock.monotonic_us();
+    if (last_us_) status.data_age += static_cast<double>(now - *last_us_) * 1e-6;
   }
   status.text = kBusy;
   if (status.state == Status::State::kOk) status.state = Status::State::kDegraded;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,8 +77,8 @@ class WELLGYRO_EXPORT Reporter {
   std::map<std::string, Verdict> verdicts_;  ///< of the last files, by check
   std::string turned_;                       ///< which of them changed last, and to what
   std::mutex mutex_;
-  Status last_;               ///< for Repeat, and ...
-  std::int64_t last_us_ = 0;  ///< ... when it was said
+  Status last_;                          ///< for Repeat, and ...
+  std::optional<std::int64_t> last_us_;  ///< ... when it was said, if one was
 };
 
 }  // namespace wellgyro

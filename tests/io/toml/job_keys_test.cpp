@@ -95,6 +95,27 @@ TEST(JobKeys, WordsStandInTheOrderOfTheirEnumerators) {
   EXPECT_EQ(at(words::kEvent, Event::Kind::kRemark), "remark");
 }
 
+// What a choice, a switch or a channel is where the file does not say.
+TEST(JobKeys, AbsentWordsAreThoseOfAJob) {
+  const Job job;
+  const auto word = [](const auto& words, auto value) {
+    return words.at(static_cast<std::size_t>(value));
+  };
+  const auto is = [](bool value) { return value ? "true" : "false"; };
+  EXPECT_EQ(JobKeyOf("alignment", "method").absent, word(words::kAlignment, job.alignment.method));
+  EXPECT_EQ(JobKeyOf("alignment", "of").absent, word(words::kAzimuthOf, job.alignment.of));
+  EXPECT_EQ(JobKeyOf("alignment", "use_fixes").absent, is(job.alignment.use_fixes));
+  EXPECT_EQ(JobKeyOf("attitude", "order").absent, word(words::kOrder, job.attitude.order));
+  EXPECT_EQ(JobKeyOf("stations", "at_stops").absent, is(job.stations.at_stops));
+  EXPECT_EQ(JobKeyOf("depth", "kind").absent, word(words::kDepthKind, job.depth.kind));
+  EXPECT_EQ(JobKeyOf("magnetic", "tie").absent, is(MagneticSpec{}.tie));
+  EXPECT_EQ(JobKeyOf("operations", "unsigned_tool").absent, is(OperationSpec{}.unsigned_tool));
+  EXPECT_EQ(JobKeyOf("run", "verdict").absent, word(words::kRunVerdict, RunSpec{}.misrun));
+  for (const JobKey& key : JobKeys()) {
+    if (key.channel != nullptr) EXPECT_EQ(key.absent, Channels{}.*key.channel) << NameOf(key);
+  }
+}
+
 // `value` of `key` alone in a job that has what else it needs; `line` gets its place.
 std::string JobWith(const JobKey& key, double value, int& line) {
   std::string text = kHead;
