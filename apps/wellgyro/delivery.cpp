@@ -30,15 +30,17 @@ struct Delivery {
 
 constexpr std::size_t kSaid = 5;  // of faults; all are in the files
 
+void Say(const std::vector<Fault>& faults) {
+  for (std::size_t i = 0; i < std::min(faults.size(), kSaid); ++i) Complain(faults[i]);
+}
+
 /// Where there is no survey at all: what else was found that may be the reason.
 void SayReasons(const RunRecord& record, const SourceRecord& source) {
-  for (std::size_t i = 0; i < std::min(record.faults.size(), kSaid); ++i) {
-    Complain(record.faults[i]);
-  }
+  Say(record.faults);
+  Say(source.faults);
   const auto malformed = source.counts.find("malformed");
-  if (malformed != source.counts.end() && malformed->second > 0 && !source.faults.empty()) {
-    Complain(fmt::format("{} messages came and were refused; the first: {}", malformed->second,
-                         SentenceOf(source.faults.front())));
+  if (malformed != source.counts.end() && malformed->second > 0) {
+    Complain(fmt::format("{} messages came and were refused", malformed->second));
   }
 }
 
@@ -73,9 +75,7 @@ bool Nothing(const ToolResult& result) { return !result.survey.unusable.empty();
 
 void SayLosses(const SourceRecord& source) {
   Complain("done, with losses or damage: see source.toml and run.toml");
-  for (std::size_t i = 0; i < std::min(source.faults.size(), kSaid); ++i) {
-    Complain(source.faults[i]);
-  }
+  Say(source.faults);
 }
 
 int DeliverTools(Delivery& delivery, const std::vector<ToolResult>& results, const JobFile& job,

@@ -97,6 +97,10 @@ class Program(ProgramTest):
                                            delta=0.02)
 
         self.assertGreater(surveys, len(cuts) // 3)
+        begin = self.Survey(self.Write("begin.lcm", self.bytes[:100]), "begin")
+        self.assertEqual(begin.returncode, 2)
+        self.assertIn("no samples came", begin.stderr)
+        self.assertIn("begin.lcm ends inside an event", begin.stderr)
 
     def test_flipped_bytes_never_crash_and_are_told(self):
         chance = random.Random(2)
